@@ -1,0 +1,3 @@
+//! The `snell` command: the only crate that opens files, prints and exits.
+
+fn main() {}

@@ -1,0 +1,1 @@
+//! Well-distributed points and hashes.

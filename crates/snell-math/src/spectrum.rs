@@ -1,0 +1,1 @@
+//! Wavelengths, the standard observer and bands.

@@ -1,0 +1,66 @@
+//! What surfaces do with light, and what solids do with the light inside.
+
+use snell_math::{Dispersion, Rgb};
+
+use super::texture::Texture;
+use crate::table::Id;
+
+/// A material: the lecture's terms, each of which may be absent.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Material {
+    /// Its name, where the author gave one.
+    pub name: Option<String>,
+    /// Light it gives off by itself, unlit and casting none: the colour of a lamp or of a photograph to stand behind things.
+    pub emission: Option<Id<Texture>>,
+    /// The factor on the scene's ambient light; where absent, the diffuse colour.
+    pub ambient: Option<Id<Texture>>,
+    /// Diffuse reflectance: Lambert's cosine.
+    pub diffuse: Option<Id<Texture>>,
+    /// Strength and colour of the highlight (Phong's: the cosine between mirrored view and light to the power `shininess`).
+    pub specular: Option<Id<Texture>>,
+    /// The highlight's exponent, at least 0.
+    pub shininess: f32,
+    /// The fixed coefficient of the mirrored ray; 0 spawns none.
+    pub mirror: Option<Id<Texture>>,
+    /// Where it is transparent.
+    pub dielectric: Option<Dielectric>,
+    /// Seen and lit from its outward side alone, as the Standard Procedural Databases take their opaque surfaces: light
+    /// from behind the outward normal gives nothing, from wherever the surface is seen.
+    pub one_sided: bool,
+}
+
+/// A transparent body: its boundary and its inside.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dielectric {
+    /// The index of refraction.
+    pub ior: Dispersion,
+    /// Reflection and transmission follow Fresnel's equations, and the coefficients below scale them; or else the
+    /// coefficients are the shares themselves. Under total internal reflection all light is reflected either way.
+    pub fresnel: bool,
+    /// The coefficient of the reflected ray.
+    pub reflect: Id<Texture>,
+    /// The coefficient of the refracted ray.
+    pub transmit: Id<Texture>,
+    /// What light meets inside.
+    pub medium: Medium,
+    /// Where bodies overlap, the one of higher priority is there; at equal priority, the one entered last.
+    pub priority: i32,
+}
+
+/// The inside of a transparent body. Coefficients are per world unit of length.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Medium {
+    /// Absorption: after distance d a share exp(−absorption · d) is left (Beer and Lambert).
+    pub absorption: Rgb,
+    /// Scattering: what a milky body does; black where it is clear.
+    pub scattering: Rgb,
+    /// The mean cosine of scattering in (−1, 1): forward above 0 (Henyey and Greenstein's g).
+    pub anisotropy: f32,
+}
+
+impl Medium {
+    /// True where light passes unchanged.
+    pub fn is_clear(&self) -> bool {
+        self.absorption.is_black() && self.scattering.is_black()
+    }
+}

@@ -1,0 +1,1 @@
+//! Test helpers: golden pictures, brute force, degenerate values, planted defects.

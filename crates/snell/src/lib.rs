@@ -1,0 +1,20 @@
+//! The engine of Snell: recursive ray tracing with reflection and refraction, as a library.
+
+pub mod accel;
+pub mod camera;
+pub mod compile;
+pub mod csg;
+pub mod film;
+pub mod integrator;
+pub mod light;
+pub mod material;
+pub mod observe;
+pub mod optics;
+pub mod render;
+pub mod shape;
+pub mod texture;
+pub mod trace;
+
+pub use snell_image as image;
+pub use snell_math as math;
+pub use snell_scene as scene;
