@@ -1,1 +1,137 @@
-//! (being written)
+//! From the scene as its author described it to the flat, immutable form that is traced.
+
+mod images;
+mod objects;
+
+use snell_math::dispersion::fraunhofer::SODIUM_D;
+use snell_math::{Point3, Ray, Rgb};
+use snell_scene::scene::{self, Scene};
+use snell_scene::{Diagnostic, Severity};
+
+use crate::geometry::{Geometry, Hit, QueryScratch};
+use crate::interaction::SurfaceInteraction;
+use crate::light::Light;
+use crate::material::Material;
+use crate::texture::{Background, Textures};
+use crate::trace::{Inside, MediumStack, MediumStacks};
+
+/// A scene ready to be traced: never changed, shared by all threads.
+#[derive(Debug)]
+pub struct CompiledScene {
+    /// What rays can meet.
+    pub geometry: Geometry,
+    /// The materials.
+    pub materials: Vec<Material>,
+    /// The textures.
+    pub textures: Textures,
+    /// The lights.
+    pub lights: Vec<Light>,
+    /// Ambient light.
+    pub ambient: Rgb,
+    /// The camera, still without a picture's size.
+    pub camera: scene::Camera,
+    /// The names of the objects, by their number; those without one are named after what they are.
+    pub object_names: Vec<String>,
+    /// What is odd about the scene but renders all the same.
+    pub warnings: Vec<Diagnostic>,
+    /// What a ray sees that hits nothing.
+    pub background: Background,
+    /// For each material, its body's index of refraction at the D line; 1 where it is opaque.
+    indices_d: Vec<f64>,
+    /// Any light goes through any material.
+    has_bodies: bool,
+}
+
+/// What keeps a scene from being compiled: errors, and the warnings that came with them.
+#[derive(Clone, Debug, thiserror::Error)]
+#[error("{}", self.first_message())]
+pub struct CompileError {
+    /// What was found, in the order of finding.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl CompileError {
+    fn first_message(&self) -> &str {
+        let is_error = |d: &&Diagnostic| d.severity == Severity::Error;
+        self.diagnostics.iter().find(is_error).map_or("the scene cannot be compiled", |d| &d.message)
+    }
+}
+
+/// Sizes of a compiled scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SceneSize {
+    /// Triangles in meshes, each mesh counted once.
+    pub triangles: u64,
+    /// Primitives that hierarchies hold, triangles not counted.
+    pub primitives: u64,
+}
+
+impl CompiledScene {
+    /// Compiles a scene: decodes its pictures, flattens its objects, builds its hierarchies.
+    ///
+    /// # Errors
+    /// [`CompileError`] with everything that is wrong: pictures that cannot be decoded, textures that refer to themselves,
+    /// more primitives than can be counted.
+    pub fn build(scene: &Scene) -> Result<Self, CompileError> {
+        let mut diagnostics = Vec::new();
+        let images = images::decode_all(&scene.images, &mut diagnostics);
+        let textures = Textures::compile(&scene.textures, &images)
+            .map_err(|error| diagnostics.push(Diagnostic::error(error.to_string())));
+        let background = Background::compile(&scene.background, &images)
+            .map_err(|error| diagnostics.push(Diagnostic::error(error.to_string())));
+        let (Ok(textures), Ok(background)) = (textures, background) else {
+            return Err(CompileError { diagnostics });
+        };
+        let mut materials: Vec<Material> =
+            scene.materials.iter().map(|material| Material::new(material, &textures)).collect();
+        materials.push(Material::unspecified());
+        let (geometry, object_names) = objects::compile(scene, &materials, &mut diagnostics);
+        if diagnostics.iter().any(|d| d.severity == Severity::Error) {
+            return Err(CompileError { diagnostics });
+        }
+        Ok(Self {
+            geometry,
+            lights: scene.lights.iter().map(Light::new).collect(),
+            ambient: scene.ambient,
+            camera: scene.camera.clone(),
+            object_names,
+            warnings: diagnostics,
+            background,
+            indices_d: materials.iter().map(|m| m.body.as_ref().map_or(1.0, |b| b.ior.index(SODIUM_D))).collect(),
+            has_bodies: materials.iter().any(|m| m.body.is_some()),
+            materials,
+            textures,
+        })
+    }
+
+    /// How much there is of it.
+    pub fn size(&self) -> SceneSize {
+        let Geometry { world, prototypes, meshes, .. } = &self.geometry;
+        let primitives = std::iter::once(world).chain(prototypes).map(|space| space.primitives.len() as u64).sum();
+        SceneSize { triangles: meshes.iter().map(|mesh| mesh.triangle_count() as u64).sum(), primitives }
+    }
+
+    /// Everything about a hit that shading needs.
+    #[inline]
+    pub fn interaction(&self, ray: &Ray, hit: &Hit) -> SurfaceInteraction {
+        self.geometry.interaction(ray, hit)
+    }
+
+    /// The index of refraction at the D line of what is there: of a body, or 1 outside of all.
+    #[inline]
+    pub fn index_d(&self, inside: Option<Inside>) -> f64 {
+        inside.map_or(1.0, |inside| self.indices_d[inside.material as usize])
+    }
+
+    /// The bodies that a point is in, as a stack with the innermost on top.
+    pub fn media_around(&self, point: Point3, media: &mut MediumStacks, query: &mut QueryScratch) -> MediumStack {
+        if !self.has_bodies {
+            return MediumStack::default();
+        }
+        let bodies = self.geometry.bodies_around(point, query);
+        bodies.into_iter().fold(MediumStack::default(), |stack, (solid, material)| {
+            let priority = self.materials[material as usize].body.as_ref().map_or(0, |body| body.priority);
+            media.enter(stack, Inside { solid, material, priority })
+        })
+    }
+}

@@ -1,0 +1,146 @@
+//! The film: sums of samples, exact, so that no order of adding or merging changes a bit.
+//!
+//! A sample is rounded once to a whole number of 2⁻³⁰, and sums are integers. That is finer than the steps of an `f32`
+//! for every value above 2⁻⁷, far below what a display shows for the rest, and leaves room for thousands of samples at
+//! the brightest value there is.
+
+use snell_image::Image;
+use snell_math::Rgb;
+
+/// The value of one unit: 2⁻³⁰.
+const UNIT: f64 = 1.0 / 1_073_741_824.0;
+/// Samples beyond this radiance count as this much: 2²⁰, a thousand times the sun's disk in a picture of its sky.
+const BRIGHTEST: f64 = 1_048_576.0;
+
+/// The sum of the samples of one pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PixelSum {
+    sum: [i64; 3],
+    count: u32,
+}
+
+impl PixelSum {
+    /// Adds a sample. One that is not finite counts as black; the result says whether it was.
+    #[must_use = "samples that are not finite are to be counted"]
+    pub fn add(&mut self, sample: Rgb) -> bool {
+        self.count += 1;
+        let finite = sample.is_finite();
+        if finite {
+            for (sum, component) in self.sum.iter_mut().zip(sample.to_array()) {
+                let value = f64::from(component).clamp(-BRIGHTEST, BRIGHTEST);
+                *sum = sum.saturating_add((value / UNIT).round_ties_even() as i64);
+            }
+        }
+        finite
+    }
+
+    /// Adds the samples of another part of the same pixel.
+    pub fn merge(&mut self, other: &Self) {
+        for (sum, more) in self.sum.iter_mut().zip(other.sum) {
+            *sum = sum.saturating_add(more);
+        }
+        self.count += other.count;
+    }
+
+    /// How many samples it holds.
+    pub fn count(&self) -> u32 {
+        self.count
+    }
+
+    /// The mean of the samples; black where there are none.
+    pub fn mean(&self) -> Rgb {
+        if self.count == 0 {
+            return Rgb::BLACK;
+        }
+        let [r, g, b] = self.sum.map(|sum| (sum as f64 * UNIT / f64::from(self.count)) as f32);
+        Rgb::new(r, g, b)
+    }
+}
+
+/// The pixels of a picture in the making.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Film {
+    width: u32,
+    height: u32,
+    pixels: Vec<PixelSum>,
+}
+
+impl Film {
+    /// Without a sample yet.
+    pub fn new(width: u32, height: u32) -> Self {
+        Self { width, height, pixels: vec![PixelSum::default(); width as usize * height as usize] }
+    }
+
+    /// Pixels in x.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Pixels in y.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// One pixel, by its place in rows from the top.
+    pub fn pixel(&self, index: usize) -> &PixelSum {
+        &self.pixels[index]
+    }
+
+    /// Adds samples to one pixel.
+    pub fn add(&mut self, index: usize, samples: &PixelSum) {
+        self.pixels[index].merge(samples);
+    }
+
+    /// Scene-linear colours: each pixel the mean of its samples.
+    pub fn develop(&self) -> Image<Rgb> {
+        Image::from_pixels(self.width, self.height, self.pixels.iter().map(PixelSum::mean).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+        #[test]
+        fn no_order_of_adding_or_merging_changes_a_bit(samples in prop::collection::vec(prop::array::uniform3(-2.0..1e6f32), 1..40), cut in 0..40usize) {
+            let sum = |samples: &mut dyn Iterator<Item = &[f32; 3]>| {
+                let mut pixel = PixelSum::default();
+                for sample in samples {
+                    assert!(pixel.add(Rgb::from(*sample)));
+                }
+                pixel
+            };
+            let forward = sum(&mut samples.iter());
+            let backward = sum(&mut samples.iter().rev());
+            let cut = cut.min(samples.len());
+            let mut merged = sum(&mut samples[cut..].iter());
+            merged.merge(&sum(&mut samples[..cut].iter()));
+            prop_assert_eq!(forward, backward);
+            prop_assert_eq!(forward, merged);
+            let plain: f64 = samples.iter().map(|s| f64::from(s[0])).sum::<f64>() / samples.len() as f64;
+            prop_assert!((f64::from(forward.mean().r) - plain).abs() <= 1e-7 * plain.abs().max(1.0));
+        }
+    }
+
+    #[test]
+    fn what_is_not_finite_is_black_and_told() {
+        let mut pixel = PixelSum::default();
+        assert!(!pixel.add(Rgb::new(f32::NAN, 1.0, 1.0)));
+        assert!(!pixel.add(Rgb::new(1.0, f32::INFINITY, 1.0)));
+        assert!(pixel.add(Rgb::gray(3.0)));
+        assert_eq!(pixel.mean(), Rgb::gray(1.0));
+    }
+
+    #[test]
+    fn one_sample_comes_back_as_it_was() {
+        for value in [0.0_f32, 1.0, 0.5, 0.123_456_79, 1234.567, -0.25] {
+            let mut pixel = PixelSum::default();
+            assert!(pixel.add(Rgb::gray(value)));
+            assert_eq!(pixel.mean().r, value);
+        }
+    }
+}

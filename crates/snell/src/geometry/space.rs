@@ -1,0 +1,135 @@
+//! A space: primitives with their hierarchy and what is known of each.
+
+use snell_math::{Bounds3, Normal3, Point3, Ray, Vector3};
+
+use super::LocalHit;
+use super::placed::Placement;
+use crate::accel::{Bvh, Candidate};
+use crate::interaction::SurfaceInteraction;
+use crate::shape::Shape;
+use crate::texture::RELATIVE_INSET;
+
+/// No such place: no placement, no material, no inner primitive.
+pub const NONE: u32 = u32::MAX;
+
+/// Something that a ray can meet. `placement` is a place in its space's list, or [`NONE`] where it stands in the space as it is.
+#[derive(Debug)]
+pub enum Primitive {
+    Shape { shape: Shape, placement: u32 },
+    Mesh { mesh: u32, placement: u32 },
+    Solid { solid: u32, placement: u32 },
+    Instance { prototype: u32, placement: u32, material: u32 },
+}
+
+/// What is known of a primitive and not needed to meet it.
+#[derive(Clone, Copy, Debug)]
+pub struct Attributes {
+    /// Its object, as a place in the scene's list of names.
+    pub object: u32,
+    /// Its object's material, or [`NONE`].
+    pub material: u32,
+    /// Where a shape was brought into the space, the place of its object's own space; else [`NONE`].
+    pub object_space: u32,
+    /// No light goes through any part of it.
+    pub is_opaque: bool,
+}
+
+/// The object's space of a shape that was brought out of it.
+#[derive(Debug)]
+pub struct ObjectSpace {
+    pub placement: Placement,
+    pub shape: Shape,
+}
+
+impl ObjectSpace {
+    /// Fills in where on its object an interaction is.
+    pub fn locate(&self, interaction: &mut SurfaceInteraction, local: &LocalHit) {
+        let Self { placement, shape } = self;
+        let point = placement.point_to_local(interaction.point);
+        let normal = placement.normal_to_local(interaction.geometric_normal);
+        interaction.object_point = point;
+        interaction.object_inside = inside(point, normal, placement.error_to_local(interaction.error));
+        if let LocalHit::Shape(hit) = local {
+            interaction.uv = shape.uv(point, hit.part);
+        }
+    }
+}
+
+/// A short way into the solid, surely longer than the point is wrong: where patterns are read.
+pub fn inside(point: Point3, outward: Normal3, error: f64) -> Vector3 {
+    outward.as_vector() * -(8.0 * error + RELATIVE_INSET * point.max_abs())
+}
+
+/// Primitives with their hierarchy: bounded ones first, then those without bounds, such as planes.
+#[derive(Debug)]
+pub struct Space {
+    pub primitives: Vec<Primitive>,
+    pub attributes: Vec<Attributes>,
+    pub bounds: Vec<Bounds3>,
+    pub placements: Vec<Placement>,
+    pub object_spaces: Vec<ObjectSpace>,
+    /// Over the first primitives, as many as `bounds` has.
+    pub bvh: Bvh,
+}
+
+impl Space {
+    /// The placement of a primitive that has one.
+    #[inline]
+    pub fn placement(&self, primitive: &Primitive) -> Option<&Placement> {
+        let (Primitive::Shape { placement, .. }
+        | Primitive::Mesh { placement, .. }
+        | Primitive::Solid { placement, .. }
+        | Primitive::Instance { placement, .. }) = primitive;
+        if *placement == NONE { None } else { Some(&self.placements[*placement as usize]) }
+    }
+
+    /// The box of a primitive; all of space for one without bounds.
+    pub fn bounds_of(&self, index: u32) -> Bounds3 {
+        self.bounds.get(index as usize).copied().unwrap_or(Bounds3::EVERYTHING)
+    }
+
+    /// The box of all primitives.
+    pub fn total_bounds(&self) -> Bounds3 {
+        if self.primitives.len() > self.bounds.len() {
+            return Bounds3::EVERYTHING;
+        }
+        self.bounds.iter().fold(Bounds3::EMPTY, |sum, b| sum.union(b))
+    }
+
+    /// The nearest hit of a ray up to `t_max`, and its primitive; of several at the same distance, that of the lowest primitive.
+    /// `test` is given a primitive and below which distance hits count.
+    #[inline]
+    pub fn nearest<H: Candidate>(
+        &self,
+        ray: &Ray,
+        t_max: f64,
+        mut test: impl FnMut(u32, &Primitive, f64) -> Option<H>,
+    ) -> Option<(u32, H)> {
+        let mut nearest = None;
+        let mut limit = t_max;
+        // The unbounded ones first, since a floor shortens the way through the rest; from the last to the first, and with
+        // limits just beyond the nearest, so that of equals the lowest stays.
+        for index in (self.bounds.len()..self.primitives.len()).rev() {
+            if let Some(hit) = test(index as u32, &self.primitives[index], limit.next_up()) {
+                limit = hit.t();
+                nearest = Some((index as u32, hit));
+            }
+        }
+        let bounded = self
+            .bvh
+            .closest(ray, limit, |index, limit| test(index, &self.primitives[index as usize], limit.next_up()));
+        bounded.or(nearest)
+    }
+
+    /// Visits every primitive whose box a ray passes before `t_max`, in no particular order, until `visit` says it is enough.
+    /// True where it did.
+    #[inline]
+    pub fn any(&self, ray: &Ray, t_max: f64, mut visit: impl FnMut(u32, &Primitive) -> bool) -> bool {
+        for index in self.bounds.len()..self.primitives.len() {
+            if visit(index as u32, &self.primitives[index]) {
+                return true;
+            }
+        }
+        self.bvh.any(ray, t_max, |index| visit(index, &self.primitives[index as usize]))
+    }
+}

@@ -1,0 +1,283 @@
+//! Recursive ray tracing: the lecture's `RT_shade`, with Fresnel's equations, nested bodies, absorption and dispersion.
+//!
+//! Whitted, "An Improved Illumination Model for Shaded Display", CACM 23(6), 1980; `shade` follows the order of the lecture:
+//! the ambient term, then each light, then reflection, then refraction. World space; `wo` leads to the viewer, `wi` to a
+//! light, both leaving the surface.
+
+use snell_math::spectrum::Bands;
+use snell_math::{Rgb, Vector3};
+
+use super::{Integrator, scattering};
+use crate::camera::{Camera, Projection, Window};
+use crate::compile::CompiledScene;
+use crate::geometry::Hit;
+use crate::interaction::SurfaceInteraction;
+use crate::material::{Bsdf, Interface};
+use crate::observe::{Observer, Term};
+use crate::optics::{beer_lambert, fresnel_dielectric, reflect, refract};
+use crate::texture::ViewProjection;
+use crate::trace::{Band, Crossing, Inside, RayKind, RayTask, ShadowQuestion, Sink, Spawn};
+
+/// Recursive ray tracing over lights without extent.
+#[derive(Clone, Debug)]
+pub struct Whitted {
+    bands: Bands,
+    /// For each material, its index of refraction in each band; empty where it does not disperse.
+    band_indices: Vec<Vec<f64>>,
+    camera: Camera,
+    view: ViewProjection,
+}
+
+impl Whitted {
+    /// For a scene seen by a camera, splitting white light into `bands` wavelength bands at dispersive surfaces.
+    pub fn new(scene: &CompiledScene, camera: &Camera, bands: u32) -> Self {
+        let bands = Bands::new(bands);
+        let indices = |material: &crate::material::Material| match &material.body {
+            Some(body) if body.ior.is_dispersive() => {
+                bands.iter().map(|band| body.ior.index(band.wavelength_nm)).collect()
+            }
+            _ => Vec::new(),
+        };
+        let [u, v, w] = camera.axes();
+        let Window { left, right, bottom, top } = camera.window();
+        let view = match camera.projection() {
+            Projection::Perspective => ViewProjection { u, v, w, left, right, bottom, top },
+            Projection::Orthographic => ViewProjection::for_orthographic(u, v, w, (right - left) / (top - bottom)),
+        };
+        let band_indices = scene.materials.iter().map(indices).collect();
+        Self { bands, band_indices, camera: camera.clone(), view }
+    }
+
+    /// What a ray sees that leaves the scene.
+    fn background(&self, scene: &CompiledScene, task: &RayTask) -> Rgb {
+        // The parallel rays of an orthographic camera see a photograph by where they are, not by where they go.
+        if task.kind == RayKind::Camera && self.camera.projection() == Projection::Orthographic {
+            let position = self.camera.picture_position(task.ray.origin);
+            return scene.background.evaluate_at_pixel(position, task.ray.direction);
+        }
+        scene.background.evaluate(task.ray.direction, &self.view)
+    }
+}
+
+impl Integrator for Whitted {
+    fn shade<O: Observer>(&self, scene: &CompiledScene, task: &RayTask, hit: Option<&Hit>, out: &mut Sink<'_, O>) {
+        let mut task = *task;
+        // What the body that the ray travels in does to it on the way.
+        let distance = hit.map_or(f64::INFINITY, |hit| hit.t);
+        self.travel(scene, &mut task, distance, out);
+
+        let Some(hit) = hit else {
+            out.met(&task, None);
+            out.add(&task, Term::Background, self.background(scene, &task));
+            return;
+        };
+        let interaction = scene.interaction(&task.ray, hit);
+        out.met(&task, Some(&interaction));
+        let material = &scene.materials[interaction.material as usize];
+        let bsdf = material.bsdf(&scene.textures, &interaction);
+
+        let leaving = interaction.is_outward(task.ray.direction);
+        let crossing = material.body.as_ref().map(|body| {
+            let inside =
+                Inside { solid: interaction.solid, material: interaction.material, priority: body.priority };
+            out.media.cross(task.media, inside, leaving)
+        });
+        // A boundary that a body of higher priority covers is not there.
+        if let Some(crossing) = crossing
+            && crossing.is_without_effect()
+        {
+            out.pass(&task, interaction.spawn_ray(task.ray.direction), crossing.after);
+            return;
+        }
+
+        let wo = -task.ray.direction;
+        add_local_terms(scene, &task, &interaction, &bsdf, wo, out);
+        if !bsdf.mirror.is_black() {
+            spawn_reflected(&task, &interaction, wo, bsdf.mirror, out);
+        }
+        if let (Some(interface), Some(crossing)) = (bsdf.interface, crossing) {
+            self.spawn_at_interface(scene, &task, &interaction, wo, interface, crossing, out);
+        }
+    }
+}
+
+impl Whitted {
+    /// Absorbs and scatters over the stretch up to the hit.
+    fn travel<O: Observer>(&self, scene: &CompiledScene, task: &mut RayTask, distance: f64, out: &mut Sink<'_, O>) {
+        let Some(inside) = out.media.current(task.media) else { return };
+        let Some(body) = &scene.materials[inside.material as usize].body else { return };
+        if !body.medium.scattering.is_black() {
+            scattering::gather(scene, task, &body.medium, distance, out);
+        }
+        if !body.medium.is_clear() {
+            task.throughput *= beer_lambert(body.medium.absorption + body.medium.scattering, distance);
+        }
+    }
+
+    /// Reflection and refraction at the boundary of a transparent body.
+    #[expect(clippy::too_many_arguments, reason = "the parts of one hit; a struct of them would have this one user")]
+    fn spawn_at_interface<O: Observer>(
+        &self,
+        scene: &CompiledScene,
+        task: &RayTask,
+        interaction: &SurfaceInteraction,
+        wo: Vector3,
+        interface: Interface,
+        crossing: Crossing,
+        out: &mut Sink<'_, O>,
+    ) {
+        let normal = consistent_normal(interaction, wo);
+        let boundary = Boundary { interface, cosine: normal.dot(wo) };
+        let splits = task.band.is_none()
+            && [crossing.before, crossing.beyond]
+                .into_iter()
+                .flatten()
+                .any(|inside| !self.band_indices[inside.material as usize].is_empty());
+        let mut reflected = Rgb::BLACK;
+        let mut met_total_reflection = false;
+
+        // Each band for itself where the indices differ between them; else all light at once.
+        let alone = [(task.band, Rgb::WHITE)];
+        let split = self.bands.iter().enumerate().map(|(i, band)| (Some(Band(i as u8)), band.weight));
+        let parts = split.take(if splits { usize::MAX } else { 0 }).chain(alone.into_iter().take(usize::from(!splits)));
+        for (band, weight) in parts {
+            let eta_before = self.index(scene, crossing.before, band);
+            let eta_beyond = self.index(scene, crossing.beyond, band);
+            let direction = refract(wo, normal, eta_before / eta_beyond);
+            let (reflect_share, transmit_share) = boundary.shares(eta_before, eta_beyond, direction.is_some());
+            reflected += weight * reflect_share;
+            let Some(direction) = direction else {
+                met_total_reflection = true;
+                continue;
+            };
+            // On a smooth mesh the shading normal may send it back to the side it came from; then the flat one decides.
+            let direction = if interaction.geometric_normal.dot(direction) * interaction.geometric_normal.dot(wo) < 0.0 {
+                direction
+            } else {
+                let flat = interaction.geometric_normal.face_forward(wo).as_vector();
+                refract(wo, flat, eta_before / eta_beyond).unwrap_or(-wo)
+            };
+            let ray = interaction.spawn_ray(direction);
+            let weight = weight * transmit_share;
+            out.spawn(task, Spawn { kind: RayKind::Refracted, ray, weight, media: crossing.after, band });
+        }
+        if met_total_reflection {
+            out.total_internal_reflection(task);
+        }
+        spawn_reflected(task, interaction, wo, reflected, out);
+    }
+
+    /// The index of refraction of a body in a band; at the D line where the ray carries all light; 1 outside of all.
+    fn index(&self, scene: &CompiledScene, inside: Option<Inside>, band: Option<Band>) -> f64 {
+        match (inside, band) {
+            (Some(inside), Some(Band(band))) => {
+                let indices = &self.band_indices[inside.material as usize];
+                indices.get(usize::from(band)).copied().unwrap_or_else(|| scene.index_d(Some(inside)))
+            }
+            (inside, _) => scene.index_d(inside),
+        }
+    }
+}
+
+/// A boundary as one ray meets it.
+struct Boundary {
+    interface: Interface,
+    /// Of the angle of incidence.
+    cosine: f64,
+}
+
+impl Boundary {
+    /// The coefficients of the reflected and the refracted ray.
+    ///
+    /// Under total internal reflection all that either would carry is reflected: the lecture's function has no transmitted
+    /// ray there and says nothing of its share, but light does not vanish.
+    fn shares(&self, eta_before: f64, eta_beyond: f64, refracts: bool) -> (Rgb, Rgb) {
+        let Interface { fresnel, reflect, transmit } = self.interface;
+        match (fresnel, refracts) {
+            (true, true) => {
+                let reflectance = fresnel_dielectric(self.cosine, eta_before, eta_beyond) as f32;
+                (reflect * reflectance, transmit * (1.0 - reflectance))
+            }
+            (true, false) => (reflect, Rgb::BLACK),
+            (false, true) => (reflect, transmit),
+            (false, false) => (reflect + transmit, Rgb::BLACK),
+        }
+    }
+}
+
+/// Emission, the ambient term, and a question to each light that may show.
+fn add_local_terms<O: Observer>(
+    scene: &CompiledScene,
+    task: &RayTask,
+    interaction: &SurfaceInteraction,
+    bsdf: &Bsdf,
+    wo: Vector3,
+    out: &mut Sink<'_, O>,
+) {
+    if !bsdf.emission.is_black() {
+        out.add(task, Term::Emission, bsdf.emission);
+    }
+    let ambient = bsdf.ambient * scene.ambient;
+    if !ambient.is_black() {
+        out.add(task, Term::Ambient, ambient);
+    }
+    if !bsdf.is_lit() {
+        return;
+    }
+    // The side that is lit: the viewer's, or the outward one of surfaces that have but one.
+    let side = if bsdf.one_sided || interaction.is_outward(wo) { 1.0 } else { -1.0 };
+    let geometric = interaction.geometric_normal.as_vector() * side;
+    let normal = interaction.shading_normal.as_vector() * side;
+    for (number, light) in scene.lights.iter().enumerate() {
+        let Some(arriving) = light.illuminate(interaction.point) else { continue };
+        let wi = arriving.to_light;
+        // No question where the surface itself is in the way.
+        if normal.dot(wi) <= 0.0 || geometric.dot(wi) <= 0.0 {
+            continue;
+        }
+        let local = bsdf.reflect_light(normal, wo, wi);
+        let weight = task.throughput * arriving.irradiance;
+        let ray = interaction.spawn_ray(wi);
+        // From where the ray really starts: the light may be as near as the offset.
+        let distance = arriving.distance - (ray.origin - interaction.point).dot(wi);
+        out.ask(ShadowQuestion {
+            ray,
+            distance,
+            terms: [
+                (Term::Diffuse(number as u32), weight * local.diffuse),
+                (Term::Specular(number as u32), weight * local.specular),
+            ],
+            sample: task.sample,
+            task: task.id,
+            media: task.media,
+            extinction_scale: 1.0,
+        });
+    }
+}
+
+/// The mirrored ray, on the side it came from.
+fn spawn_reflected<O: Observer>(
+    task: &RayTask,
+    interaction: &SurfaceInteraction,
+    wo: Vector3,
+    weight: Rgb,
+    out: &mut Sink<'_, O>,
+) {
+    if weight.is_black() {
+        return;
+    }
+    let direction = reflect(wo, consistent_normal(interaction, wo));
+    let flat = interaction.geometric_normal.face_forward(wo).as_vector();
+    // On a smooth mesh the shading normal may send it through the surface; then the flat one decides.
+    let direction = if flat.dot(direction) > 0.0 { direction } else { reflect(wo, flat) };
+    let ray = interaction.spawn_ray(direction);
+    let (media, band) = (task.media, task.band);
+    out.spawn(task, Spawn { kind: RayKind::Reflected, ray, weight, media, band });
+}
+
+/// The shading normal on the viewer's side; the geometric one where the shading normal is seen from behind.
+fn consistent_normal(interaction: &SurfaceInteraction, wo: Vector3) -> Vector3 {
+    let side = if interaction.is_outward(wo) { 1.0 } else { -1.0 };
+    let shading = interaction.shading_normal.as_vector() * side;
+    if shading.dot(wo) > 0.0 { shading } else { interaction.geometric_normal.as_vector() * side }
+}

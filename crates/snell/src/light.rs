@@ -1,0 +1,143 @@
+//! Lights without extent, as the lecture has them: where they are, and how much light arrives at a point.
+
+use snell_math::{Point3, Rgb, Vector3, portable};
+use snell_scene::scene;
+
+/// A light ready to be asked. World space.
+#[derive(Clone, Debug)]
+pub struct Light {
+    place: Place,
+    intensity: Rgb,
+    falloff: scene::Falloff,
+}
+
+#[derive(Clone, Debug)]
+enum Place {
+    Point { position: Point3 },
+    Directional { to_light: Vector3 },
+    Spot { position: Point3, axis: Vector3, cosine_cone: f64, cosine_full: f64 },
+}
+
+/// What one light sends to one point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Illumination {
+    /// Towards the light, unit length.
+    pub to_light: Vector3,
+    /// How far the light is; infinite for a directional one.
+    pub distance: f64,
+    /// The irradiance on a surface that faces the light, unblocked.
+    pub irradiance: Rgb,
+}
+
+impl Light {
+    /// From the scene's light.
+    pub fn new(light: &scene::Light) -> Self {
+        let unit = |v: Vector3| v.try_normalize().unwrap_or(Vector3::Y);
+        let place = match light.kind {
+            scene::LightKind::Point { position } => Place::Point { position },
+            scene::LightKind::Directional { direction } => Place::Directional { to_light: -unit(direction) },
+            scene::LightKind::Spot { position, direction, cone_angle, full_angle } => Place::Spot {
+                position,
+                axis: unit(direction),
+                cosine_cone: portable::cos(cone_angle),
+                cosine_full: portable::cos(full_angle),
+            },
+        };
+        Self { place, intensity: light.intensity, falloff: light.falloff }
+    }
+
+    /// What arrives at a world point; `None` where it is nothing: outside a spot's cone, or at the light itself.
+    #[inline]
+    pub fn illuminate(&self, point: Point3) -> Option<Illumination> {
+        let position = match &self.place {
+            Place::Directional { to_light } => {
+                return Some(Illumination {
+                    to_light: *to_light,
+                    distance: f64::INFINITY,
+                    irradiance: self.intensity,
+                });
+            }
+            Place::Point { position } | Place::Spot { position, .. } => *position,
+        };
+        let offset = position - point;
+        let distance = offset.length();
+        if !(distance > 0.0) {
+            return None;
+        }
+        let to_light = offset * (1.0 / distance);
+        let mut share = match self.falloff {
+            scene::Falloff::None => 1.0,
+            scene::Falloff::Linear => 1.0 / distance,
+            scene::Falloff::InverseSquare => 1.0 / (distance * distance),
+            scene::Falloff::Polynomial { constant, linear, quadratic } => {
+                (1.0 / (constant + distance * (linear + distance * quadratic))).min(1.0)
+            }
+        };
+        if let Place::Spot { axis, cosine_cone, cosine_full, .. } = self.place {
+            let cosine = -axis.dot(to_light);
+            if cosine <= cosine_cone {
+                return None;
+            }
+            if cosine < cosine_full {
+                let x = (cosine - cosine_cone) / (cosine_full - cosine_cone);
+                share *= x * x * (3.0 - 2.0 * x);
+            }
+        }
+        Some(Illumination { to_light, distance, irradiance: self.intensity * share as f32 })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn light(kind: scene::LightKind, falloff: scene::Falloff) -> Light {
+        Light::new(&scene::Light { name: None, kind, intensity: Rgb::gray(8.0), falloff })
+    }
+
+    #[test]
+    fn falloffs_follow_their_formulas() {
+        let at = |falloff| {
+            light(scene::LightKind::Point { position: Point3::new(0.0, 2.0, 0.0) }, falloff)
+                .illuminate(Point3::ORIGIN)
+                .expect("lit")
+                .irradiance
+                .r
+        };
+        assert_eq!(at(scene::Falloff::None), 8.0);
+        assert_eq!(at(scene::Falloff::Linear), 4.0);
+        assert_eq!(at(scene::Falloff::InverseSquare), 2.0);
+        assert_eq!(at(scene::Falloff::Polynomial { constant: 1.0, linear: 0.5, quadratic: 0.5 }), 2.0);
+        assert_eq!(at(scene::Falloff::Polynomial { constant: 0.0, linear: 0.0, quadratic: 0.1 }), 8.0);
+    }
+
+    #[test]
+    fn a_spot_is_full_inside_dark_outside_and_smooth_between() {
+        let (cone_angle, full_angle) = (portable::radians(30.0), portable::radians(20.0));
+        let spot = light(
+            scene::LightKind::Spot {
+                position: Point3::ORIGIN,
+                direction: Vector3::new(0.0, -2.0, 0.0),
+                cone_angle,
+                full_angle,
+            },
+            scene::Falloff::None,
+        );
+        let at = |degrees: f64| {
+            let angle = portable::radians(degrees);
+            let point = Point3::new(portable::sin(angle), -portable::cos(angle), 0.0);
+            spot.illuminate(point).map_or(0.0, |i| i.irradiance.r)
+        };
+        assert_eq!(at(0.0), 8.0);
+        assert_eq!(at(19.9), 8.0);
+        assert_eq!(at(30.1), 0.0);
+        assert!(at(22.0) > at(25.0) && at(25.0) > at(28.0) && at(29.9) < 0.01);
+        assert_eq!(at(180.0), 0.0);
+    }
+
+    #[test]
+    fn a_light_at_the_point_itself_gives_nothing() {
+        let point = light(scene::LightKind::Point { position: Point3::ORIGIN }, scene::Falloff::InverseSquare);
+        assert_eq!(point.illuminate(Point3::ORIGIN), None);
+    }
+}

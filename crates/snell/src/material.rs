@@ -1,0 +1,263 @@
+//! Materials: from the scene's description, with textures, to a small value at each hit.
+//!
+//! A [`Bsdf`] is a sum of lobes, each absent where its coefficient is black. It is plain data: it is made by value at a hit
+//! and asks nothing of the heap. Its lobes are of two kinds, as the lecture's `shade` has them: those summed over lights
+//! (diffuse, highlight) and those that spawn rays (mirror, interface).
+
+use snell_math::{Rgb, Vector3, portable};
+use snell_scene::Id;
+use snell_scene::scene;
+
+use crate::interaction::SurfaceInteraction;
+use crate::texture::{Footprint, TextureCoordinates, Textures};
+
+/// What a surface does with light at one point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bsdf {
+    /// Light given off.
+    pub emission: Rgb,
+    /// The factor on ambient light.
+    pub ambient: Rgb,
+    /// Lambert's reflectance.
+    pub diffuse: Rgb,
+    /// The highlight's strength.
+    pub specular: Rgb,
+    /// The highlight's exponent.
+    pub shininess: f32,
+    /// The coefficient of the mirrored ray.
+    pub mirror: Rgb,
+    /// The boundary of a transparent body.
+    pub interface: Option<Interface>,
+    /// Lit from the outward side alone.
+    pub one_sided: bool,
+}
+
+/// How the boundary of a transparent body shares light between reflection and refraction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interface {
+    /// The shares follow Fresnel's equations, scaled by the coefficients; or else are the coefficients.
+    pub fresnel: bool,
+    /// The reflected ray's coefficient.
+    pub reflect: Rgb,
+    /// The refracted ray's coefficient.
+    pub transmit: Rgb,
+}
+
+/// What one light adds, before it is known how much of it is blocked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LocalReflection {
+    /// By the diffuse lobe.
+    pub diffuse: Rgb,
+    /// By the highlight.
+    pub specular: Rgb,
+}
+
+impl Bsdf {
+    const BLACK: Self = Self {
+        emission: Rgb::BLACK,
+        ambient: Rgb::BLACK,
+        diffuse: Rgb::BLACK,
+        specular: Rgb::BLACK,
+        shininess: 0.0,
+        mirror: Rgb::BLACK,
+        interface: None,
+        one_sided: false,
+    };
+
+    /// True where lights matter.
+    #[inline]
+    pub fn is_lit(&self) -> bool {
+        !(self.diffuse.is_black() && self.specular.is_black())
+    }
+
+    /// The lobes summed over lights, per unit of irradiance on a surface that faces the light, with the cosine: Lambert's
+    /// k_d (N·L) and Phong's k_s (R·L)^n, R the mirrored `wo` (Phong 1975). The reflectances are the lecture's: a white
+    /// surface facing a light of intensity one is one.
+    ///
+    /// `wo` leads to the viewer and `wi` to the light, both leaving the surface; `normal` is on the viewer's side. All unit.
+    #[inline]
+    pub fn reflect_light(&self, normal: Vector3, wo: Vector3, wi: Vector3) -> LocalReflection {
+        let cosine = normal.dot(wi);
+        if cosine <= 0.0 {
+            return LocalReflection { diffuse: Rgb::BLACK, specular: Rgb::BLACK };
+        }
+        let specular = if self.specular.is_black() {
+            Rgb::BLACK
+        } else {
+            let mirrored = normal * (2.0 * normal.dot(wo)) - wo;
+            self.specular * highlight(mirrored.dot(wi), self.shininess)
+        };
+        LocalReflection { diffuse: self.diffuse * cosine as f32, specular }
+    }
+}
+
+/// The cosine to the power of the exponent, clipped at 0.
+#[inline]
+fn highlight(cosine: f64, shininess: f32) -> f32 {
+    if cosine <= 0.0 {
+        return 0.0;
+    }
+    // Below this the result is no f32 but zero; the logarithm is by far the dearest part of a small scene's shading.
+    let exponent = f64::from(shininess);
+    if exponent * (1.0 - cosine) > 104.0 {
+        return 0.0;
+    }
+    portable::pow(cosine.min(1.0), exponent) as f32
+}
+
+/// A material, ready to be evaluated.
+#[derive(Clone, Debug)]
+pub struct Material {
+    /// All lobes with their constant colours; those in `textured` are filled in at the hit.
+    base: Bsdf,
+    textured: Vec<(Slot, Id<scene::Texture>)>,
+    /// The inside of the body, where it is transparent.
+    pub body: Option<Body>,
+}
+
+/// The inside of a transparent body.
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// Its index of refraction.
+    pub ior: snell_math::Dispersion,
+    /// What light meets inside.
+    pub medium: scene::Medium,
+    /// Which body wins where several overlap.
+    pub priority: i32,
+}
+
+/// A colour of a material that a texture may give.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Slot {
+    Emission,
+    Ambient,
+    Diffuse,
+    Specular,
+    Mirror,
+    Reflect,
+    Transmit,
+}
+
+impl Material {
+    /// From the scene's material; constant textures are folded in.
+    pub fn new(material: &scene::Material, textures: &Textures) -> Self {
+        let mut compiled = Self {
+            base: Bsdf { shininess: material.shininess, one_sided: material.one_sided, ..Bsdf::BLACK },
+            textured: Vec::new(),
+            body: None,
+        };
+        if let Some(dielectric) = &material.dielectric {
+            compiled.base.interface =
+                Some(Interface { fresnel: dielectric.fresnel, reflect: Rgb::BLACK, transmit: Rgb::BLACK });
+            compiled.body = Some(Body {
+                ior: dielectric.ior.clone(),
+                medium: dielectric.medium,
+                priority: dielectric.priority,
+            });
+            compiled.fill(Slot::Reflect, dielectric.reflect, textures);
+            compiled.fill(Slot::Transmit, dielectric.transmit, textures);
+        }
+        let slots = [
+            (Slot::Emission, material.emission),
+            (Slot::Ambient, material.ambient.or(material.diffuse)),
+            (Slot::Diffuse, material.diffuse),
+            (Slot::Specular, material.specular),
+            (Slot::Mirror, material.mirror),
+        ];
+        for (slot, texture) in slots {
+            if let Some(texture) = texture {
+                compiled.fill(slot, texture, textures);
+            }
+        }
+        compiled
+    }
+
+    /// What an object without a material has: a light grey, matt surface.
+    pub fn unspecified() -> Self {
+        let gray = Rgb::gray(0.7);
+        Self { base: Bsdf { ambient: gray, diffuse: gray, ..Bsdf::BLACK }, textured: Vec::new(), body: None }
+    }
+
+    /// Whether it matters where on its object a hit is.
+    pub fn is_textured(&self) -> bool {
+        !self.textured.is_empty()
+    }
+
+    /// The lobes at a hit.
+    #[inline]
+    pub fn bsdf(&self, textures: &Textures, interaction: &SurfaceInteraction) -> Bsdf {
+        let mut bsdf = self.base;
+        if !self.textured.is_empty() {
+            let coordinates = TextureCoordinates {
+                object_point: interaction.object_point,
+                object_inside: interaction.object_inside,
+                world_point: interaction.point,
+                world_inside: interaction.inside(),
+                uv: interaction.uv,
+                footprint: Footprint::SHARP,
+            };
+            for &(slot, texture) in &self.textured {
+                *slot_of(&mut bsdf, slot) = textures.evaluate(texture, &coordinates);
+            }
+        }
+        if let Some(color) = interaction.vertex_color {
+            bsdf.diffuse *= color;
+            bsdf.ambient *= color;
+        }
+        bsdf
+    }
+
+    fn fill(&mut self, slot: Slot, texture: Id<scene::Texture>, textures: &Textures) {
+        match textures.constant(texture) {
+            Some(color) => *slot_of(&mut self.base, slot) = color,
+            None => self.textured.push((slot, texture)),
+        }
+    }
+}
+
+#[inline]
+fn slot_of(bsdf: &mut Bsdf, slot: Slot) -> &mut Rgb {
+    match (slot, &mut bsdf.interface) {
+        (Slot::Emission, _) => &mut bsdf.emission,
+        (Slot::Ambient, _) => &mut bsdf.ambient,
+        (Slot::Diffuse, _) => &mut bsdf.diffuse,
+        (Slot::Specular, _) => &mut bsdf.specular,
+        (Slot::Reflect, Some(interface)) => &mut interface.reflect,
+        (Slot::Transmit, Some(interface)) => &mut interface.transmit,
+        // Reflect and Transmit are only filled where there is an interface, so these are the mirror's.
+        (Slot::Mirror | Slot::Reflect | Slot::Transmit, _) => &mut bsdf.mirror,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn light_is_reflected_as_the_lecture_says() {
+        let bsdf =
+            Bsdf { diffuse: Rgb::gray(0.5), specular: Rgb::gray(0.25), shininess: 2.0, ..Bsdf::BLACK };
+        let normal = Vector3::Y;
+        let wo = Vector3::new(1.0, 1.0, 0.0).normalize();
+        let mirrored = Vector3::new(-1.0, 1.0, 0.0).normalize();
+        let both = bsdf.reflect_light(normal, wo, mirrored);
+        assert!((both.diffuse.r - 0.5 * 0.5_f32.sqrt()).abs() < 1e-7);
+        assert!((both.specular.r - 0.25).abs() < 1e-7);
+        let straight = bsdf.reflect_light(normal, wo, normal);
+        assert!((straight.specular.r - 0.125).abs() < 1e-7, "(R.L)^2 = cos^2 45 degrees");
+        let below = bsdf.reflect_light(normal, wo, -normal);
+        assert!(below.diffuse.is_black() && below.specular.is_black());
+    }
+
+    #[test]
+    fn an_early_zero_of_the_highlight_is_a_true_one() {
+        for shininess in [0.0_f32, 1.0, 10.0, 1000.0, 1e6] {
+            for step in 0..=1000 {
+                let cosine = f64::from(step) / 1000.0;
+                let exact = portable::pow(cosine, f64::from(shininess)) as f32;
+                let quick = highlight(cosine, shininess);
+                assert!(quick == exact || cosine == 0.0, "{cosine}^{shininess}: {quick} and {exact}");
+            }
+        }
+    }
+}

@@ -1,0 +1,269 @@
+//! The main loop: passes over tiles, in parallel, with progress and cancelling.
+//!
+//! A first pass gives every pixel its first samples. With adaptive antialiasing, further passes give more to those pixels
+//! whose neighbourhood or whose own samples differ, always the next ones of the same fixed sequence. What a pass decides, it
+//! decides from the finished pass before, so tiles and threads do not matter.
+
+mod adaptive;
+mod layers;
+mod settings;
+
+use std::sync::Mutex;
+
+use rayon::prelude::*;
+use snell_image::Image;
+use snell_math::{Rgb, sampling};
+
+pub use layers::Layers;
+pub use settings::RenderSettings;
+
+use crate::camera::{Camera, CameraError};
+use crate::compile::CompiledScene;
+use crate::film::{Film, PixelSum};
+use crate::integrator::{Integrator, Whitted};
+use crate::observe::{NoObserver, RayTree};
+use crate::render::adaptive::Contrast;
+use crate::render::layers::FirstHit;
+use crate::trace::{Rules, Scratch, Statistics, Tracer};
+
+/// Told how far rendering is, and asked whether to go on. Called from several threads.
+pub trait Progress: Sync {
+    /// A pass begins, of that many pixels.
+    fn pass(&self, number: u32, pixels: u64) {
+        let _ = (number, pixels);
+    }
+    /// Pixels of this pass were finished.
+    fn advance(&self, pixels: u64, rays: u64) {
+        let _ = (pixels, rays);
+    }
+    /// True where the rest is not wanted any more.
+    fn is_cancelled(&self) -> bool {
+        false
+    }
+}
+
+/// Watches nothing and never cancels.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoProgress;
+
+impl Progress for NoProgress {}
+
+/// A rendered picture.
+#[derive(Clone, Debug)]
+pub struct Rendering {
+    /// Scene-linear colours.
+    pub image: Image<Rgb>,
+    /// Depth, normal and object of each pixel, where asked for.
+    pub layers: Option<Layers>,
+    /// What was counted.
+    pub statistics: Statistics,
+    /// False where it was cancelled: pixels without a sample are black.
+    pub complete: bool,
+}
+
+/// Renders a scene by recursive ray tracing.
+///
+/// The picture depends on the scene and the settings alone: not on the number of threads, nor on the size of tiles.
+///
+/// # Errors
+/// [`CameraError`], where the scene's camera is degenerate.
+///
+/// ```
+/// use snell::compile::CompiledScene;
+/// use snell::render::{NoProgress, RenderSettings, render};
+/// use snell::scene::scene::{Object, Scene, Shape};
+/// use snell::math::{Point3, Rgb};
+///
+/// let mut scene = Scene { ambient: Rgb::WHITE, ..Scene::default() };
+/// scene.objects.push(Object::shape(Shape::Sphere { center: Point3::ORIGIN, radius: 1.0 }));
+/// let compiled = CompiledScene::build(&scene).unwrap();
+/// let settings = RenderSettings { width: 15, height: 7, ..RenderSettings::from(&scene.settings) };
+/// let picture = render(&compiled, &settings, &NoProgress).unwrap().image;
+/// let rows: Vec<String> = (0..7)
+///     .map(|y| (0..15).map(|x| if picture.pixel(x, y).r > 0.35 { '#' } else { '.' }).collect())
+///     .collect();
+/// assert_eq!(rows, [
+///     "...............",
+///     "......###......",
+///     ".....#####.....",
+///     ".....#####.....",
+///     ".....#####.....",
+///     "......###......",
+///     "...............",
+/// ]);
+/// ```
+pub fn render(
+    scene: &CompiledScene,
+    settings: &RenderSettings,
+    progress: &dyn Progress,
+) -> Result<Rendering, CameraError> {
+    let camera = settings.camera(scene)?;
+    let integrator = Whitted::new(scene, &camera, settings.bands);
+    let job = Job { scene, integrator: &integrator, camera: &camera, settings };
+    let run = || job.run(progress);
+    // A pool of its own where a number of threads is asked for; else the one of the process, with a thread for every core.
+    match settings.threads.map(|threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build()) {
+        Some(Ok(pool)) => Ok(pool.install(run)),
+        _ => Ok(run()),
+    }
+}
+
+/// Traces one sample of one pixel with the code that renders it, and remembers everything.
+///
+/// # Errors
+/// [`CameraError`], where the scene's camera is degenerate.
+pub fn explain(
+    scene: &CompiledScene,
+    settings: &RenderSettings,
+    pixel: [u32; 2],
+    sample: u32,
+) -> Result<RayTree, CameraError> {
+    let camera = settings.camera(scene)?;
+    let integrator = Whitted::new(scene, &camera, settings.bands);
+    let job = Job { scene, integrator: &integrator, camera: &camera, settings };
+    let mut tree = RayTree::default();
+    let index = pixel[1] as usize * settings.width as usize + pixel[0] as usize;
+    let mut scratch = Scratch::default();
+    let ray = job.camera_ray(index, sample);
+    let far = camera.far_distance(&ray);
+    job.tracer().trace([ray], &mut scratch, &mut Statistics::default(), &mut tree, |_, _, hit| {
+        *hit = hit.filter(|hit| hit.t <= far);
+    });
+    Ok(tree)
+}
+
+/// One rendering: what every tile needs.
+struct Job<'a, I> {
+    scene: &'a CompiledScene,
+    integrator: &'a I,
+    camera: &'a Camera,
+    settings: &'a RenderSettings,
+}
+
+/// What the tiles have given so far.
+struct Gathered {
+    film: Film,
+    contrast: Option<Contrast>,
+    layers: Option<Layers>,
+    statistics: Statistics,
+}
+
+impl<I: Integrator> Job<'_, I> {
+    fn run(&self, progress: &dyn Progress) -> Rendering {
+        let RenderSettings { width, height, .. } = *self.settings;
+        let passes = self.settings.passes();
+        let gathered = Mutex::new(Gathered {
+            film: Film::new(width, height),
+            contrast: (passes.len() > 1).then(|| Contrast::new(width, height, self.settings)),
+            layers: self.settings.layers.then(|| Layers::new(width, height)),
+            statistics: Statistics::default(),
+        });
+        let mut complete = true;
+        for (number, samples) in passes.iter().enumerate() {
+            let pixels = match number {
+                0 => None,
+                _ => lock(&gathered).contrast.as_ref().map(|contrast| contrast.unsettled(number)),
+            };
+            let tiles = self.tiles(pixels.as_deref());
+            progress.pass(number as u32, tiles.iter().map(|tile| tile.len() as u64).sum());
+            tiles.par_iter().for_each_init(Scratch::default, |scratch, tile| {
+                if !progress.is_cancelled() {
+                    self.render_tile(tile, samples.clone(), scratch, &gathered, progress);
+                }
+            });
+            complete = !progress.is_cancelled();
+            if !complete {
+                break;
+            }
+        }
+        let Gathered { film, layers, statistics, .. } = gathered.into_inner().unwrap_or_else(|e| e.into_inner());
+        Rendering { image: film.develop(), layers, statistics, complete }
+    }
+
+    /// Takes the samples of a range of the sequence in each pixel of a tile.
+    fn render_tile(
+        &self,
+        tile: &[u32],
+        samples: std::ops::Range<u32>,
+        scratch: &mut Scratch,
+        gathered: &Mutex<Gathered>,
+        progress: &dyn Progress,
+    ) {
+        let per_pixel = samples.len();
+        let mut statistics = Statistics::default();
+        let mut first_hits: Vec<FirstHit> = Vec::new();
+        // As many pixels at once as keep the queues in the caches.
+        for pixels in tile.chunks((MAX_QUEUE / per_pixel).max(1)) {
+            let rays = pixels
+                .iter()
+                .flat_map(|&pixel| samples.clone().map(move |sample| self.camera_ray(pixel as usize, sample)));
+            let colors =
+                self.tracer().trace(rays, scratch, &mut statistics, &mut NoObserver, |number, ray, hit| {
+                    let far = self.camera.far_distance(ray);
+                    *hit = hit.filter(|hit| hit.t <= far);
+                    if self.settings.layers && samples.start == 0 && number % per_pixel == 0 {
+                        first_hits.push(FirstHit::new(self.scene, self.camera, ray, hit.as_ref()));
+                    }
+                });
+            let mut gathered = lock(gathered);
+            for (&pixel, colors) in pixels.iter().zip(colors.chunks(per_pixel)) {
+                let mut sum = PixelSum::default();
+                for &color in colors {
+                    statistics.nonfinite_samples += u64::from(!sum.add(color));
+                }
+                gathered.film.add(pixel as usize, &sum);
+                if let Some(contrast) = &mut gathered.contrast {
+                    contrast.add(pixel as usize, colors);
+                }
+            }
+            if let Some(layers) = &mut gathered.layers {
+                for (&pixel, first) in pixels.iter().zip(first_hits.drain(..)) {
+                    layers.set(pixel as usize, first);
+                }
+            }
+        }
+        lock(gathered).statistics.merge(&statistics);
+        progress.advance(tile.len() as u64, statistics.rays());
+    }
+
+    /// The ray of one sample of a pixel.
+    fn camera_ray(&self, pixel: usize, sample: u32) -> snell_math::Ray {
+        let width = self.settings.width as usize;
+        let [dx, dy] = sampling::pixel_sample(sample);
+        self.camera.generate_ray((pixel % width) as f64 + dx, (pixel / width) as f64 + dy)
+    }
+
+    fn tracer(&self) -> Tracer<'_, I> {
+        let RenderSettings { depth, min_weight, shadows, .. } = *self.settings;
+        Tracer { scene: self.scene, integrator: self.integrator, rules: Rules { depth, min_weight, shadows } }
+    }
+
+    /// The picture, or the given pixels of it, in square tiles; each is a list of pixel places.
+    fn tiles(&self, only: Option<&[bool]>) -> Vec<Vec<u32>> {
+        let RenderSettings { width, height, tile_size, .. } = *self.settings;
+        let size = tile_size.max(1);
+        let mut tiles = Vec::new();
+        for top in (0..height).step_by(size as usize) {
+            for left in (0..width).step_by(size as usize) {
+                let rows = top..top.saturating_add(size).min(height);
+                let columns = left..left.saturating_add(size).min(width);
+                let tile: Vec<u32> = rows
+                    .flat_map(|y| columns.clone().map(move |x| y * width + x))
+                    .filter(|&pixel| only.is_none_or(|only| only[pixel as usize]))
+                    .collect();
+                if !tile.is_empty() {
+                    tiles.push(tile);
+                }
+            }
+        }
+        tiles
+    }
+}
+
+/// The longest queue of camera rays at once.
+const MAX_QUEUE: usize = 1024;
+
+fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    // A panic in another tile is passed on by rayon; what was gathered is still whole.
+    mutex.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+}

@@ -1,0 +1,89 @@
+//! How a picture is to be rendered: the scene's own settings, and what only the one who renders knows.
+
+use std::ops::Range;
+
+use snell_image::tone::ToneCurve;
+use snell_scene::scene::{self, Antialiasing, PixelGrid, Shadows};
+
+use crate::camera::{Camera, CameraError};
+use crate::compile::CompiledScene;
+
+/// Settings of one rendering.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RenderSettings {
+    /// Pixels in x, from 1.
+    pub width: u32,
+    /// Pixels in y, from 1.
+    pub height: u32,
+    /// The depth of the deepest ray; camera rays have depth 1.
+    pub depth: u16,
+    /// Rays whose weight is below this in every component are not followed.
+    pub min_weight: f32,
+    /// How pixels are sampled.
+    pub antialiasing: Antialiasing,
+    /// What blocks light.
+    pub shadows: Shadows,
+    /// How many bands white light splits into, 1 to 64.
+    pub bands: u32,
+    /// Where rays pass through pixels.
+    pub pixel_grid: PixelGrid,
+    /// The edge of a tile in pixels. The picture does not depend on it.
+    pub tile_size: u32,
+    /// How many threads; one for each core where `None`. The picture does not depend on it.
+    pub threads: Option<usize>,
+    /// Whether depth, normals and objects are wanted too.
+    pub layers: bool,
+    /// How the picture will be shown: what adaptive antialiasing takes for different.
+    pub tone: scene::Tone,
+    /// As [`scene::Settings::exposure`], to the same end.
+    pub exposure: f32,
+}
+
+impl From<&scene::Settings> for RenderSettings {
+    /// The scene's wishes, in tiles of 32 pixels on all cores.
+    fn from(settings: &scene::Settings) -> Self {
+        Self {
+            width: settings.width,
+            height: settings.height,
+            depth: u16::try_from(settings.depth).unwrap_or(u16::MAX),
+            min_weight: settings.min_weight,
+            antialiasing: settings.antialiasing,
+            shadows: settings.shadows,
+            bands: settings.bands,
+            pixel_grid: settings.pixel_grid,
+            tile_size: 32,
+            threads: None,
+            layers: false,
+            tone: settings.tone,
+            exposure: settings.exposure,
+        }
+    }
+}
+
+impl RenderSettings {
+    /// The scene's camera for a picture of this size.
+    ///
+    /// # Errors
+    /// [`CameraError`], where it is degenerate.
+    pub fn camera(&self, scene: &CompiledScene) -> Result<Camera, CameraError> {
+        Camera::new(&scene.camera, self.width, self.height, self.pixel_grid)
+    }
+
+    /// The tone curve under its name in [`snell_image`].
+    pub fn tone_curve(&self) -> ToneCurve {
+        match self.tone {
+            scene::Tone::None => ToneCurve::None,
+            scene::Tone::Reinhard => ToneCurve::Reinhard,
+            scene::Tone::Filmic => ToneCurve::Filmic,
+        }
+    }
+
+    /// Which samples of the sequence each pass takes; all pixels take part in the first.
+    pub(super) fn passes(&self) -> Vec<Range<u32>> {
+        match self.antialiasing {
+            Antialiasing::None => vec![0..1],
+            Antialiasing::Samples(count) => vec![0..count.max(1)],
+            Antialiasing::Adaptive => vec![0..1, 1..4, 4..16],
+        }
+    }
+}

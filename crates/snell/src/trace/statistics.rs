@@ -1,0 +1,58 @@
+//! What was counted while rendering. Every count is an integer, so that sums do not depend on their order.
+
+use snell_math::Rgb;
+
+/// Counts of one tile, or of a picture: [`Statistics::merge`] adds them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Statistics {
+    /// Rays from the camera.
+    pub camera_rays: u64,
+    /// Rays spawned by reflection.
+    pub reflected_rays: u64,
+    /// Rays spawned by refraction.
+    pub refracted_rays: u64,
+    /// Rays towards lights.
+    pub shadow_rays: u64,
+    /// The depth of the deepest ray traced; 1 where there were only camera rays.
+    pub max_depth: u32,
+    /// How often light met total internal reflection.
+    pub total_internal_reflections: u64,
+    /// Samples in which NaN or an infinite value came up, and which count as black.
+    pub nonfinite_samples: u64,
+    /// The sum of the weights of rays that were not followed, in units of 2⁻³².
+    cut_weight: u64,
+}
+
+impl Statistics {
+    /// The weight of rays that were not followed, over all camera rays: the share of the picture that was lost, if all that
+    /// they would have seen were white.
+    pub fn cut_weight(&self) -> f64 {
+        if self.camera_rays == 0 {
+            return 0.0;
+        }
+        self.cut_weight as f64 / 4_294_967_296.0 / self.camera_rays as f64
+    }
+
+    /// Counts the throughput of a ray that is not followed, as the mean of its absolute components.
+    pub fn add_cut_weight(&mut self, throughput: Rgb) {
+        let weight = f64::from(throughput.map(f32::abs).mean());
+        self.cut_weight = self.cut_weight.saturating_add((weight * 4_294_967_296.0) as u64);
+    }
+
+    /// All rays that were traced, towards lights included.
+    pub fn rays(&self) -> u64 {
+        self.camera_rays + self.reflected_rays + self.refracted_rays + self.shadow_rays
+    }
+
+    /// Adds the counts of another part of the picture.
+    pub fn merge(&mut self, other: &Self) {
+        self.camera_rays += other.camera_rays;
+        self.reflected_rays += other.reflected_rays;
+        self.refracted_rays += other.refracted_rays;
+        self.shadow_rays += other.shadow_rays;
+        self.max_depth = self.max_depth.max(other.max_depth);
+        self.total_internal_reflections += other.total_internal_reflections;
+        self.nonfinite_samples += other.nonfinite_samples;
+        self.cut_weight = self.cut_weight.saturating_add(other.cut_weight);
+    }
+}

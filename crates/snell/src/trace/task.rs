@@ -1,0 +1,66 @@
+//! The ray task: everything that is known of a ray before it is traced.
+
+use snell_math::{Ray, Rgb};
+
+use super::media::MediumStack;
+use crate::observe::Term;
+
+/// A ray to be traced, with its weight to a sample of a pixel. "Rays are tasks": the lecture's recursion is a list of these.
+#[derive(Clone, Copy, Debug)]
+pub struct RayTask {
+    /// The ray, in world space, its direction of unit length.
+    pub ray: Ray,
+    /// The factor on everything this ray will see, up to its sample.
+    pub throughput: Rgb,
+    /// Which sample of the tile it belongs to.
+    pub sample: u32,
+    /// Its own number within the tile's pass, and its parent's; a camera ray is its own parent.
+    pub id: u32,
+    /// See `id`.
+    pub parent: u32,
+    /// In which transparent bodies it travels.
+    pub media: MediumStack,
+    /// 1 for a camera ray, its parent's plus one for a reflected or refracted one.
+    pub depth: u16,
+    /// How many boundaries without effect it went through since it was spawned, such as that of a body inside one of higher
+    /// priority.
+    pub passes: u16,
+    /// What made it.
+    pub kind: RayKind,
+    /// The wavelength band it carries, or all light.
+    pub band: Option<Band>,
+}
+
+/// What made a ray.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RayKind {
+    /// The camera.
+    Camera,
+    /// Reflection at a mirroring or transparent surface.
+    Reflected,
+    /// Refraction into or out of a transparent body.
+    Refracted,
+}
+
+/// One wavelength band of those that white light is split into, as a place in the integrator's list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Band(pub u8);
+
+/// A question that shading asks: how much of a light arrives here?
+#[derive(Clone, Copy, Debug)]
+pub struct ShadowQuestion {
+    /// From the shaded point towards the light, direction of unit length.
+    pub ray: Ray,
+    /// How far the light is; infinite for a directional one.
+    pub distance: f64,
+    /// What the light adds to the sample if nothing blocks it, term by term; a term that adds nothing is black.
+    pub terms: [(Term, Rgb); 2],
+    /// Which sample it belongs to.
+    pub sample: u32,
+    /// The ray that asks.
+    pub task: u32,
+    /// The bodies around the shaded point, on the light's side.
+    pub media: MediumStack,
+    /// The factor on the extinction of scattering media on the way: 1, but for the orders of multiple scattering.
+    pub extinction_scale: f32,
+}
