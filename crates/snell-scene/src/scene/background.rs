@@ -12,17 +12,21 @@ use crate::table::Id;
 pub enum Background {
     /// The same colour everywhere.
     Color(Rgb),
-    /// By the ray direction's height (its world y): stops of (height in [−1, 1], colour), increasing.
+    /// By the ray direction's height (its world y in unit length): stops of (height in [−1, 1], colour) in order, blended
+    /// linearly. Stops at the same height make a step; from there on up the last counts.
     Gradient(Vec<(f64, Rgb)>),
-    /// A photograph that fills the camera's view exactly, as if on a screen at infinity. Directions outside the view take
-    /// the nearest border pixel; those pointing behind the camera see it mirrored.
+    /// A photograph that fills the camera's view exactly, as if on a screen at infinity, stretched where its shape is another
+    /// than the picture's. Directions outside the view take the nearest border pixel; those pointing behind the camera are
+    /// mirrored to its front. Rays of an orthographic camera, whose directions are all the same, see it by their place in
+    /// the picture; once turned aside, as for a perspective camera with 40° between the left and right borders.
     Photograph {
         /// The picture.
         image: Id<ImageAsset>,
         /// Multiplies its colours.
         intensity: f32,
     },
-    /// A panorama (equirectangular) around the scene: the picture's middle is seen along −z, its top row straight up (+y).
+    /// A panorama (equirectangular) around the scene: the picture's middle is seen along −z, its right half towards +x, its
+    /// top border straight up (+y), where it has the mean colour of the top row; blended between the centres of pixels.
     Panorama {
         /// The picture, most often HDR.
         image: Id<ImageAsset>,

@@ -1,0 +1,83 @@
+//! A compiled [`Mapping`]: carries a point of a surface into texture space, a little inside the solid.
+
+use snell_math::{Point3, Vector3};
+use snell_scene::scene::{Mapping, Space};
+
+use super::coordinates::{RELATIVE_INSET, TextureCoordinates};
+
+/// Where a pattern stands.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Placement {
+    space: Space,
+    /// Nothing moves: skips the arithmetic.
+    is_identity: bool,
+    /// The images of the unit vectors x, y and z.
+    columns: [Vector3; 3],
+    /// The image of the origin.
+    origin: Point3,
+    /// Bounds the largest coordinate of a vector's image by the vector's own largest (the matrix's maximum norm).
+    growth: f64,
+    /// The length of the longest column: what a footprint grows by (the most it can, where the columns are perpendicular).
+    stretch: f64,
+}
+
+/// A point in texture space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct TexturePoint {
+    /// The point; finite always.
+    pub point: Point3,
+    /// The diameter of the footprint; zero is sharp.
+    pub footprint: f64,
+}
+
+impl Placement {
+    pub fn new(mapping: &Mapping) -> Self {
+        let columns = [Vector3::X, Vector3::Y, Vector3::Z].map(|axis| mapping.texture_from_space.vector(axis));
+        let row = |i: usize| columns.iter().map(|column| column[i].abs()).sum::<f64>();
+        Self {
+            space: mapping.space,
+            is_identity: mapping.texture_from_space.is_identity(),
+            columns,
+            origin: mapping.texture_from_space.point(Point3::ORIGIN),
+            growth: row(0).max(row(1)).max(row(2)),
+            stretch: columns.iter().map(|column| column.length()).fold(0.0, f64::max),
+        }
+    }
+
+    /// True where the coordinates are (u, v, 0), so that a pattern has two dimensions.
+    pub fn is_flat(&self) -> bool {
+        self.space == Space::Uv
+    }
+
+    /// The point to evaluate a pattern at.
+    #[inline]
+    pub fn locate(&self, at: &TextureCoordinates) -> TexturePoint {
+        let (point, inside, footprint) = match self.space {
+            Space::Object => (at.object_point, at.object_inside, at.footprint.object),
+            Space::World => (at.world_point, at.world_inside, at.footprint.world),
+            Space::Uv => (Point3::new(at.uv[0], at.uv[1], 0.0), Vector3::ZERO, at.footprint.uv),
+        };
+        let footprint = f64::from(footprint.max(0.0)) * self.stretch;
+        let placed = if self.is_identity { point } else { self.origin + self.linear(point.to_vector()) };
+        let placed = if self.is_flat() { placed } else { self.inset(point, placed, inside) };
+        TexturePoint { point: if placed.is_finite() { placed } else { Point3::ORIGIN }, footprint }
+    }
+
+    #[inline]
+    fn linear(&self, v: Vector3) -> Vector3 {
+        self.columns[0] * v.x() + self.columns[1] * v.y() + self.columns[2] * v.z()
+    }
+
+    /// `placed`, the image of `point`, moved inwards: at least by the rounding error of mapping it.
+    #[inline]
+    fn inset(&self, point: Point3, placed: Point3, inside: Vector3) -> Point3 {
+        let inside = if self.is_identity { inside } else { self.linear(inside) };
+        let length = inside.max_abs();
+        // No inside, or one that says nothing.
+        if !(length > 0.0 && length.is_finite()) {
+            return placed;
+        }
+        let rounding = RELATIVE_INSET * (self.growth * point.max_abs() + self.origin.max_abs());
+        placed + inside * (rounding / length).max(1.0)
+    }
+}
