@@ -1,0 +1,175 @@
+//! `cargo xtask gallery`: renders the built-in scenes into `docs/gallery/` and writes the page that shows them.
+//!
+//! A caption is the comment that opens a scene file: its first line is the title, the rest says what the picture shows.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::Outcome;
+use crate::arguments::Arguments;
+use crate::process;
+
+/// How a picture of the gallery is rendered: wide enough for a page, smoothed as the scene asks; pixels.
+const RENDER_OPTIONS: &[&str] = &["--width", "960"];
+
+/// Pictures above this size do not belong into a repository; bytes.
+const LARGEST_PICTURE: u64 = 1 << 20;
+
+/// Runs the command line `cargo xtask gallery ...`.
+pub fn run(arguments: Arguments) -> Outcome {
+    let wanted = arguments.names()?;
+    let root = process::root();
+    let scenes = root.join("scenes");
+    let folder = root.join("docs").join("gallery");
+    let snell = process::build_snell()?;
+    let names = listed_names(&process::output(process::program(&snell.to_string_lossy()).arg("scenes"))?);
+    if names.is_empty() {
+        return Err("`snell scenes` lists none".to_owned());
+    }
+    if let Some(unknown) = wanted.iter().find(|name| !names.contains(name)) {
+        return Err(format!("there is no built-in scene `{unknown}`; there are: {}", names.join(", ")));
+    }
+
+    // Read all captions before the first picture is rendered: a missing one should not cost minutes.
+    let mut entries = Vec::new();
+    for name in names {
+        let path = find_scene(&scenes, &name).ok_or_else(|| format!("no file scenes/**/{name}.toml"))?;
+        let text = fs::read_to_string(&path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
+        let caption = Caption::of(&text).ok_or_else(|| {
+            format!("{}: a scene starts with a comment: `# Title`, then what it shows", path.display())
+        })?;
+        entries.push((name, caption));
+    }
+
+    fs::create_dir_all(&folder).map_err(|error| format!("cannot make {}: {error}", folder.display()))?;
+    for (name, _) in entries.iter().filter(|(name, _)| wanted.is_empty() || wanted.contains(name)) {
+        let picture = folder.join(format!("{name}.png"));
+        println!("{name}");
+        let mut command = process::program(&snell.to_string_lossy());
+        process::run(command.args(["render", name, "-o"]).arg(&picture).args(RENDER_OPTIONS))?;
+        let size = fs::metadata(&picture).map_err(|error| format!("{}: {error}", picture.display()))?.len();
+        if size > LARGEST_PICTURE {
+            return Err(format!(
+                "{}: {size} bytes are too many for a page; {LARGEST_PICTURE} at most",
+                picture.display()
+            ));
+        }
+    }
+    remove_pictures_of_no_scene(&folder, &entries)?;
+    let page = folder.join("README.md");
+    fs::write(&page, page_text(&entries)).map_err(|error| format!("cannot write {}: {error}", page.display()))?;
+    println!("{} pictures in {}", entries.len(), folder.display());
+    Ok(())
+}
+
+/// The first word of every line that `snell scenes` prints.
+fn listed_names(listing: &str) -> Vec<String> {
+    listing.lines().filter_map(|line| line.split_whitespace().next()).map(str::to_owned).collect()
+}
+
+/// The file `NAME.toml` in `folder` or below it.
+fn find_scene(folder: &Path, name: &str) -> Option<PathBuf> {
+    let direct = folder.join(format!("{name}.toml"));
+    if direct.is_file() {
+        return Some(direct);
+    }
+    let mut below: Vec<PathBuf> = fs::read_dir(folder).ok()?.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    below.sort();
+    below.iter().filter(|path| path.is_dir()).find_map(|path| find_scene(path, name))
+}
+
+fn remove_pictures_of_no_scene(folder: &Path, entries: &[(String, Caption)]) -> Outcome {
+    let files = fs::read_dir(folder).map_err(|error| format!("cannot read {}: {error}", folder.display()))?;
+    for path in files.filter_map(|entry| Some(entry.ok()?.path())) {
+        let is_picture = path.extension().is_some_and(|extension| extension == "png");
+        let has_scene = path.file_stem().is_some_and(|stem| entries.iter().any(|(name, _)| stem == name.as_str()));
+        if is_picture && !has_scene {
+            fs::remove_file(&path).map_err(|error| format!("cannot remove {}: {error}", path.display()))?;
+        }
+    }
+    Ok(())
+}
+
+/// What a scene file says about itself.
+#[derive(Debug, PartialEq)]
+struct Caption {
+    title: String,
+    /// Paragraphs of Markdown.
+    text: Vec<String>,
+}
+
+impl Caption {
+    /// The comment at the top of a scene file; `None` where it has no title or says nothing more.
+    fn of(scene: &str) -> Option<Self> {
+        let mut lines = scene.lines().map_while(|line| line.strip_prefix('#')).map(str::trim);
+        let title = lines.next().filter(|title| !title.is_empty())?.trim_end_matches('.').to_owned();
+        let mut text = vec![String::new()];
+        for line in lines {
+            match text.last_mut() {
+                Some(paragraph) if !line.is_empty() => {
+                    if !paragraph.is_empty() {
+                        paragraph.push(' ');
+                    }
+                    *paragraph += line;
+                }
+                _ => text.push(String::new()),
+            }
+        }
+        text.retain(|paragraph| !paragraph.is_empty());
+        (!text.is_empty()).then_some(Self { title, text })
+    }
+}
+
+fn page_text(entries: &[(String, Caption)]) -> String {
+    let mut page =
+        "# Gallery\n\nEvery picture is a scene that ships inside `snell`, and the command under it makes it. \
+                    This page is written by `cargo xtask gallery`; change the scene, not the page.\n"
+            .to_owned();
+    for (name, caption) in entries {
+        page += &format!("\n## {}\n\n![{}]({name}.png)\n\n", caption.title, caption.title);
+        for paragraph in &caption.text {
+            page += &format!("{paragraph}\n\n");
+        }
+        page += &format!("```sh\nsnell render {name} -o {name}.png\n```\n");
+    }
+    page
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_caption_is_the_opening_comment() {
+        let scene = "# One glass sphere.\n# The board is seen\n# upside down.\n#\n# After the slides.\n\n# no caption\n[image]\n";
+        let caption = Caption::of(scene).expect("it has one");
+        assert_eq!(caption.title, "One glass sphere");
+        assert_eq!(caption.text, ["The board is seen upside down.", "After the slides."]);
+    }
+
+    #[test]
+    fn a_scene_that_says_nothing_has_no_caption() {
+        for scene in ["", "[image]\n# late\n", "# Only a title\n[image]\n", "#\n# no title\n", "# Title\n#\n"] {
+            assert_eq!(Caption::of(scene), None, "{scene:?}");
+        }
+    }
+
+    #[test]
+    fn the_page_shows_each_picture_with_its_command() {
+        let caption = Caption { title: "A".to_owned(), text: vec!["b".to_owned()] };
+        let page = page_text(&[("one".to_owned(), caption)]);
+        for part in ["## A\n", "(one.png)", "\nb\n", "snell render one -o one.png"] {
+            assert!(page.contains(part), "{page}");
+        }
+    }
+
+    #[test]
+    fn scenes_are_found_in_folders_too() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        fs::create_dir(folder.path().join("below")).expect("made");
+        fs::write(folder.path().join("below/deep.toml"), "").expect("written");
+        assert!(find_scene(folder.path(), "deep").is_some());
+        assert_eq!(find_scene(folder.path(), "other"), None);
+        assert_eq!(listed_names("one  what it shows\n\ntwo\n"), ["one", "two"]);
+    }
+}
