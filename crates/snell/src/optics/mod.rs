@@ -1,1 +1,20 @@
-//! (being written)
+//! What light does at a boundary between two media and inside them: pure functions of directions, indices and distances.
+//!
+//! Conventions, those of the lecture: `wo` leaves the surface, against the incident ray; the normal is on the same side as
+//! `wo`; all directions have unit length; η = η_i / η_t is the index of refraction on the side of the incident ray over that on
+//! the other. Indices come from [`snell_math::Dispersion::index`], angles are radians, cosines are those with the normal.
+
+mod fresnel;
+mod medium;
+mod reflection;
+mod refraction;
+
+pub use fresnel::{
+    FresnelAmplitudes, brewster_angle, fresnel_amplitudes, fresnel_dielectric, fresnel_dielectric_polarized,
+};
+pub use medium::{beer_lambert, henyey_greenstein};
+pub use reflection::reflect;
+pub use refraction::{cos_transmitted, critical_angle, refract};
+
+#[cfg(test)]
+mod tests;

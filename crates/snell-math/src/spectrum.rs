@@ -1,1 +1,0 @@
-//! Wavelengths, the standard observer and bands.
