@@ -1,0 +1,395 @@
+//! The hierarchy against brute force, against nasty inputs, and its validator against planted defects.
+
+use proptest::prelude::*;
+use std::ops::ControlFlow;
+
+use snell_math::{Point3, Ray, Vector3};
+
+use super::*;
+
+/// SplitMix64 (Steele, Lea and Flood, OOPSLA 2014): numbers for tests, the same everywhere.
+struct Random(u64);
+
+impl Random {
+    fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// In [−1, 1).
+    fn number(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    fn vector(&mut self) -> Vector3 {
+        Vector3::new(self.number(), self.number(), self.number())
+    }
+
+    fn point(&mut self) -> Point3 {
+        Point3::ORIGIN + self.vector()
+    }
+}
+
+fn cube(center: Point3, half: f64) -> Bounds3 {
+    Bounds3::new(center, center).grown(half)
+}
+
+/// Inputs that hierarchies have fallen over.
+fn nasty_inputs() -> Vec<(&'static str, Vec<Bounds3>)> {
+    let mut random = Random(1);
+    let at = |x: f64, y: f64, z: f64| cube(Point3::new(x, y, z), 0.0);
+    let unit = cube(Point3::ORIGIN, 1.0);
+    vec![
+        ("none", vec![]),
+        ("one", vec![unit]),
+        ("one point", vec![at(1.0, 2.0, 3.0)]),
+        ("only empty", vec![Bounds3::EMPTY; 9]),
+        ("some empty", (0..50).map(|i| if i % 3 == 0 { Bounds3::EMPTY } else { at(i as f64, 0.0, 0.0) }).collect()),
+        ("inside out", vec![unit, Bounds3::new(Point3::new(1.0, 0.0, 0.0), Point3::new(-1.0, 1.0, 1.0)), unit]),
+        ("identical", vec![unit; 10_000]),
+        ("identical points", vec![at(0.1, 0.1, 0.1); 1000]),
+        ("collinear", (0..5000).map(|i| at(i as f64, 0.0, 0.0)).collect()),
+        ("diagonal", (0..5000).map(|i| at(i as f64, i as f64, -(i as f64))).collect()),
+        ("coplanar", (0..5000).map(|_| at(random.number(), 0.0, random.number())).collect()),
+        (
+            "geometric",
+            (0..1000).map(|i| cube(Point3::new(0.7_f64.sqrt().max(0.5) * halvings(i), 0.0, 0.0), 0.0)).collect(),
+        ),
+        ("nested", (0..1000).map(|i| cube(Point3::ORIGIN, halvings(i))).collect()),
+        ("around one", (0..300).map(|i| cube(Point3::ORIGIN, i as f64)).collect()),
+        ("huge", (0..100).map(|_| cube(Point3::ORIGIN + random.vector() * 1e308, 1e300)).collect()),
+        ("beyond f32", (0..100).map(|i| cube(Point3::new(i as f64, 0.0, 0.0), 1e39)).collect()),
+        ("tiny", (0..100).map(|_| cube(Point3::ORIGIN + random.vector() * 1e-310, 0.0)).collect()),
+        ("all scales", (0..2000).map(|i| cube(random.point(), halvings(i % 200))).collect()),
+        ("random", (0..20_000).map(|_| cube(random.point(), 0.01 * random.number().abs())).collect()),
+    ]
+}
+
+/// 2^−i, without underflow to zero before i = 1074.
+fn halvings(i: usize) -> f64 {
+    (0..i).fold(1.0, |x, _| 0.5 * x)
+}
+
+#[test]
+fn nasty_inputs_give_valid_trees() {
+    for (name, bounds) in nasty_inputs() {
+        let bvh = Bvh::build(&bounds).expect(name);
+        assert_eq!(bvh.validate(&bounds), Ok(()), "{name}");
+        let statistics = bvh.statistics();
+        let present = bounds.iter().filter(|b| !b.is_empty()).count();
+        assert_eq!(statistics.primitives, present, "{name}");
+        assert_eq!(bvh.is_empty(), present == 0, "{name}");
+        assert_eq!(statistics.nodes, (2 * statistics.leaves).saturating_sub(1), "{name}");
+        assert!(statistics.depth <= MAX_DEPTH && statistics.sah_cost.is_finite(), "{name}: {statistics:?}");
+        // Every box is found again by a point of it and by a line through it.
+        for (i, b) in bounds.iter().enumerate().step_by(97).filter(|(_, b)| !b.is_empty()) {
+            let mut found = false;
+            bvh.point(b.center(), |primitive| found |= primitive == i as u32);
+            assert!(found, "{name}: {i} by its centre");
+            let ray = Ray::new(b.center(), Vector3::new(0.5, -0.25, 1.0));
+            assert!(bvh.any(&ray, 0.0, |primitive| primitive == i as u32), "{name}: {i} by a ray");
+        }
+    }
+}
+
+#[test]
+fn unusable_boxes_are_refused() {
+    let good = cube(Point3::ORIGIN, 1.0);
+    let nan = Bounds3::new(Point3::new(0.0, f64::NAN, 0.0), good.max);
+    let plane = Bounds3::new(Point3::new(f64::NEG_INFINITY, 0.0, f64::NEG_INFINITY), Point3::new(1.0, 0.0, 1.0));
+    assert_eq!(Bvh::build(&[good, nan, nan]), Err(BuildError::NotANumber(1)));
+    assert_eq!(Bvh::build(&[good, good, plane, nan]), Err(BuildError::Unbounded(2)));
+    assert_eq!(Bvh::build(&[Bounds3::EVERYTHING]), Err(BuildError::Unbounded(0)));
+}
+
+#[test]
+fn the_same_tree_from_any_number_of_threads() {
+    let mut random = Random(2);
+    // Enough for every parallel path; quantised, so that there are ties in abundance.
+    let quantised = |v: Vector3| Point3::from(v.to_array().map(|x| (x * 40.0).round()));
+    let bounds: Vec<Bounds3> = (0..100_000).map(|_| cube(quantised(random.vector()), 1.0)).collect();
+    let build = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        pool.install(|| Bvh::build(&bounds)).expect("finite boxes")
+    };
+    let one = build(1);
+    assert_eq!(one.validate(&bounds), Ok(()));
+    assert!(one == build(2) && one == build(7));
+}
+
+/// Primitives of both kinds, tested in the plainest way.
+enum Primitive {
+    Sphere(Point3, f64),
+    Triangle([Point3; 3]),
+}
+
+impl Primitive {
+    fn random(random: &mut Random, scale: f64) -> Self {
+        let center = Point3::ORIGIN + random.vector() * scale;
+        let size = 0.2 * scale * random.number().abs();
+        if random.bits().is_multiple_of(2) {
+            Self::Sphere(center, size)
+        } else {
+            Self::Triangle([0, 1, 2].map(|_| center + random.vector() * size))
+        }
+    }
+
+    fn bounds(&self) -> Bounds3 {
+        match self {
+            Self::Sphere(center, radius) => cube(*center, *radius),
+            Self::Triangle(corners) => corners.iter().fold(Bounds3::EMPTY, |b, corner| b.including(*corner)),
+        }
+    }
+
+    /// The smallest t in [0, t_max].
+    fn hit(&self, ray: &Ray, t_max: f64) -> Option<f64> {
+        let in_range = |t: f64| (0.0..=t_max).contains(&t);
+        match self {
+            Self::Sphere(center, radius) => {
+                let to_center = *center - ray.origin;
+                let a = ray.direction.length_squared();
+                let middle = to_center.dot(ray.direction) / a;
+                let across = (to_center - ray.direction * middle).length_squared();
+                let half = ((radius * radius - across) / a).sqrt();
+                [middle - half, middle + half].into_iter().find(|t| in_range(*t))
+            }
+            Self::Triangle([a, b, c]) => {
+                let (e1, e2, s) = (*b - *a, *c - *a, ray.origin - *a);
+                let p = ray.direction.cross(e2);
+                let determinant = e1.dot(p);
+                let (u, q) = (s.dot(p) / determinant, s.cross(e1));
+                let (v, t) = (ray.direction.dot(q) / determinant, e2.dot(q) / determinant);
+                (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && in_range(t)).then_some(t)
+            }
+        }
+    }
+}
+
+/// A ray of a kind that depends on `i`: random, parallel to axes, from a side of a box, at a box's corner.
+fn test_ray(i: usize, random: &mut Random, boxes: &[Bounds3], scale: f64) -> Ray {
+    let b = &boxes[random.bits() as usize % boxes.len()];
+    let mut origin = Point3::ORIGIN + random.vector() * (2.0 * scale);
+    let mut direction = random.vector().to_array();
+    match i % 8 {
+        0 => direction[i / 8 % 3] = 0.0,
+        1 => direction[i / 8 % 3] = -0.0,
+        2 => {
+            // Along an axis, with zeros of either sign, straight at a box.
+            let axis = i / 8 % 3;
+            direction = [0, 1, 2].map(|k| if k == axis { direction[k] } else { 0.0_f64.copysign(direction[k]) });
+            origin = b.center() - Vector3::from(direction) * (3.0 * scale);
+        }
+        // In the plane of a side, parallel to an axis.
+        3 => {
+            origin = b.corner(i / 8 % 8);
+            direction = [0.0, 0.0, 0.0];
+            direction[i / 64 % 3] = random.number();
+        }
+        4 => origin = b.corner(i / 8 % 8),
+        5 => direction = (b.corner(i / 8 % 8) - origin).to_array(),
+        6 => direction = direction.map(|x| x * halvings(random.bits() as usize % 100)),
+        _ => {}
+    }
+    Ray::new(origin, Vector3::from(direction))
+}
+
+/// Compares every query with brute force on many rays.
+fn check_rays(primitives: &[Primitive], rays: usize, scale: f64, random: &mut Random) {
+    let bounds: Vec<Bounds3> = primitives.iter().map(Primitive::bounds).collect();
+    let bvh = Bvh::build(&bounds).expect("finite boxes");
+    assert_eq!(bvh.validate(&bounds), Ok(()));
+    for i in 0..rays {
+        let ray = test_ray(i, random, &bounds, scale);
+        let t_max = if i % 3 == 0 { scale * random.number().abs() / ray.direction.length() } else { f64::INFINITY };
+        let hits =
+            |t_max| primitives.iter().enumerate().filter_map(move |(id, p)| p.hit(&ray, t_max).map(|t| (id as u32, t)));
+        let closest = hits(t_max).min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+        let found = bvh.closest(&ray, t_max, |id, t_max| primitives[id as usize].hit(&ray, t_max));
+        assert_eq!(found, closest, "ray {i} {ray:?}");
+        let test = |id: u32| primitives[id as usize].hit(&ray, t_max).is_some();
+        assert_eq!(bvh.any(&ray, t_max, test), closest.is_some(), "ray {i} {ray:?}");
+        let mut visited = Vec::new();
+        bvh.all(&ray, t_max, |id| visited.push(id));
+        visited.sort_unstable();
+        assert!(visited.is_sorted_by(|a, b| a < b), "visited twice: ray {i} {ray:?}");
+        for (id, _) in hits(t_max) {
+            assert!(visited.binary_search(&id).is_ok(), "{id} is missed: ray {i} {ray:?}");
+        }
+    }
+}
+
+#[test]
+fn agrees_with_brute_force_at_all_scales() {
+    for (seed, scale) in [1e-3, 1.0, 1e3, 1e6].into_iter().enumerate() {
+        let mut random = Random(seed as u64);
+        let primitives: Vec<Primitive> = (0..150).map(|_| Primitive::random(&mut random, scale)).collect();
+        check_rays(&primitives, 25_000, scale, &mut random);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+    #[test]
+    fn agrees_with_brute_force_on_random_sets(seed in any::<u64>(), count in 1..40_usize, power in -10..20_i32) {
+        let mut random = Random(seed);
+        let scale = if power < 0 { halvings(-power as usize) } else { 1.0 / halvings(power as usize) };
+        let primitives: Vec<Primitive> = (0..count).map(|_| Primitive::random(&mut random, scale)).collect();
+        check_rays(&primitives, 200, scale, &mut random);
+    }
+}
+
+#[test]
+fn a_primitive_that_only_the_margin_reaches_is_visited() {
+    // The ray passes a hair, less than the rounding of its far origin, beside the box.
+    let bounds = [cube(Point3::ORIGIN, 1.0)];
+    let bvh = Bvh::build(&bounds).expect("finite boxes");
+    let ray = Ray::new(Point3::new(-1e6, 1.0 + 1e-10, 0.0), Vector3::X);
+    assert!(bvh.any(&ray, f64::INFINITY, |_| true));
+    // But not a ray that is clearly outside.
+    let ray = Ray::new(Point3::new(-1e6, 1.0 + 1e-6, 0.0), Vector3::X);
+    assert!(!bvh.any(&ray, f64::INFINITY, |_| true));
+}
+
+#[test]
+fn ties_go_to_the_lowest_primitive() {
+    // 60 copies of one plane of boxes: every ray along x meets all of them at the same t.
+    let bounds: Vec<Bounds3> = (0..60).map(|i| cube(Point3::new(0.0, (i % 3) as f64, 0.0), 1.5)).collect();
+    let bvh = Bvh::build(&bounds).expect("finite boxes");
+    for (y, lowest) in [(0.9, 0), (2.25, 1), (3.25, 2)] {
+        for (x, direction, t) in [(-5.0, Vector3::X, 3.5), (7.0, -Vector3::X, 5.5)] {
+            let ray = Ray::new(Point3::new(x, y, 0.25), direction);
+            let test = |id: u32, _| (bounds[id as usize].min.y() < y && y < bounds[id as usize].max.y()).then_some(t);
+            for t_max in [t, f64::INFINITY] {
+                assert_eq!(bvh.closest(&ray, t_max, test), Some((lowest, t)));
+            }
+            assert_eq!(bvh.closest(&ray, 0.99 * t, test), None);
+        }
+    }
+}
+
+#[test]
+fn lines_reach_behind_their_origin() {
+    let bounds: Vec<Bounds3> = (-50..50).map(|i| cube(Point3::new(i as f64 + 0.5, 0.0, 0.0), 0.25)).collect();
+    let bvh = Bvh::build(&bounds).expect("finite boxes");
+    let ray = Ray::new(Point3::ORIGIN, Vector3::X);
+    let count = |t_min, t_max| {
+        let mut count = 0;
+        let _ = bvh.visit_between(&ray, t_min, t_max, |_| {
+            count += 1;
+            ControlFlow::Continue(())
+        });
+        count
+    };
+    assert_eq!(count(f64::NEG_INFINITY, f64::INFINITY), 100);
+    assert!((50..54).contains(&count(f64::NEG_INFINITY, 0.0)));
+    assert!((10..18).contains(&count(-10.0, 0.0)));
+    assert!(count(5.0, -5.0) == 0 && count(f64::NAN, 1.0) <= 100 && count(0.0, f64::NAN) == 0);
+    let first =
+        bvh.closest_between(&ray, -10.0, 10.0, |id, _| Some(f64::from(id) - 49.5 - 0.25).filter(|t| *t >= -10.0));
+    assert_eq!(first, Some((40, -9.75)));
+}
+
+#[test]
+fn strange_rays_end() {
+    let mut random = Random(5);
+    let bounds: Vec<Bounds3> = (0..100).map(|_| cube(random.point(), 0.1)).collect();
+    let bvh = Bvh::build(&bounds).expect("finite boxes");
+    let strange = [0.0, -0.0, 1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 5e-324, f64::MAX];
+    for (i, x) in strange.iter().enumerate() {
+        for y in strange {
+            for t_max in strange {
+                let ray = Ray::new(Point3::new(*x, y, 0.0), Vector3::new(y, *x, strange[(i + 3) % 8]));
+                bvh.all(&ray, t_max, |_| ());
+                bvh.closest(&ray, t_max, |_, t_max| Some(t_max));
+                bvh.closest(&ray, t_max, |_, _| Some(f64::NAN));
+            }
+        }
+    }
+}
+
+/// Every defect that the validator knows, planted into a good tree.
+#[test]
+fn planted_defects_are_caught() {
+    let mut random = Random(3);
+    let bounds: Vec<Bounds3> = (0..200).map(|_| cube(random.point(), 0.05)).collect();
+    let good = Bvh::build(&bounds).expect("finite boxes");
+    let leaf = good.nodes.iter().position(Node::is_leaf).expect("a leaf");
+    let sabotage = |plant: &dyn Fn(&mut Bvh)| {
+        let mut bad = good.clone();
+        plant(&mut bad);
+        bad.validate(&bounds).expect_err("the defect is caught")
+    };
+    let swapped = sabotage(&|bvh| {
+        let second = bvh.nodes[0].link as usize;
+        let box_of_first = bvh.nodes[1].bounds;
+        bvh.nodes[1].bounds = bvh.nodes[second].bounds;
+        bvh.nodes[second].bounds = box_of_first;
+    });
+    assert!(matches!(swapped, Defect::OutsideParent(_) | Defect::OutsideLeaf { .. }), "{swapped}");
+    let shrunk = sabotage(&|bvh| {
+        let high = &mut bvh.nodes[leaf].bounds.corners[1][2];
+        *high = high.next_down().next_down();
+    });
+    assert!(matches!(shrunk, Defect::OutsideLeaf { .. }), "{shrunk}");
+    let inner_shrunk = sabotage(&|bvh| bvh.nodes[0].bounds.corners[0][1] = -0.9);
+    assert!(matches!(inner_shrunk, Defect::OutsideParent(_)), "{inner_shrunk}");
+    let repeated = sabotage(&|bvh| bvh.primitives[0] = bvh.primitives[100]);
+    assert!(matches!(repeated, Defect::Unexpected(_)), "{repeated}");
+    let unknown = sabotage(&|bvh| bvh.primitives[7] = 200);
+    assert_eq!(unknown, Defect::Unexpected(200));
+    let multiple = good.nodes.iter().position(|node| node.count > 1).expect("a leaf of several");
+    let dropped = sabotage(&|bvh| bvh.nodes[multiple].count -= 1);
+    assert!(matches!(dropped, Defect::Missing(_)), "{dropped}");
+    let overfull = sabotage(&|bvh| bvh.nodes[leaf].count = 5);
+    assert_eq!(overfull, Defect::LeafSize(leaf));
+    let beyond = sabotage(&|bvh| bvh.nodes[leaf].link = 200);
+    assert_eq!(beyond, Defect::LeafSize(leaf));
+    for link in [0, 1, 2, u32::MAX] {
+        let misdirected = sabotage(&|bvh| bvh.nodes[0].link = link);
+        assert!(matches!(misdirected, Defect::OutOfOrder(_)), "{misdirected}");
+    }
+    let truncated = sabotage(&|bvh| bvh.nodes.truncate(bvh.nodes.len() - 1));
+    assert!(matches!(truncated, Defect::OutOfOrder(_)), "{truncated}");
+    let unreachable = sabotage(&|bvh| bvh.nodes.push(bvh.nodes[leaf]));
+    assert!(matches!(unreachable, Defect::Unreachable { .. }), "{unreachable}");
+    let extent = sabotage(&|bvh| bvh.extent *= 0.5);
+    assert_eq!(extent, Defect::Extent);
+    let emptied = sabotage(&|bvh| bvh.nodes.clear());
+    assert_eq!(emptied, Defect::Missing(0));
+    assert!(good.validate(&bounds[1..]).is_err());
+}
+
+#[test]
+fn a_tree_that_is_too_deep_is_caught() {
+    // A comb: every inner node has a leaf and the rest.
+    let depth = MAX_DEPTH + 1;
+    let bounds = vec![cube(Point3::ORIGIN, 1.0); depth + 1];
+    let node = |link, count| Node { bounds: Box32::enclosing(&bounds[0]), link, count };
+    let mut nodes: Vec<Node> = (0..depth as u32).flat_map(|i| [node(2, 0), node(i, 1)]).collect();
+    nodes.push(node(depth as u32, 1));
+    let bvh = Bvh { nodes, primitives: (0..=depth as u32).collect(), extent: 1.0 };
+    assert!(matches!(bvh.validate(&bounds), Err(Defect::TooDeep(_))));
+}
+
+#[test]
+fn a_greedy_input_stays_within_the_depth() {
+    // Every box 17 times smaller and nearer than the one before, so that the bins hold but one box and the rest, and the
+    // heuristic cuts off one box a level; then many copies of the last, which take ten levels more than the stack has.
+    let mut bounds = Vec::new();
+    let mut x = 1e38;
+    for _ in 0..60 {
+        bounds.push(cube(Point3::new(x, 0.0, 0.0), 0.1 * x));
+        x /= 17.0;
+    }
+    bounds.extend(vec![cube(Point3::new(x, 0.0, 0.0), 0.1 * x); 4000]);
+    let bvh = Bvh::build(&bounds).expect("finite boxes");
+    assert_eq!(bvh.validate(&bounds), Ok(()));
+    let depth = bvh.statistics().depth;
+    assert!((50..=MAX_DEPTH).contains(&depth), "{depth}");
+    // The stack suffices for a ray that meets every box.
+    let mut count = 0;
+    bvh.all(&Ray::new(Point3::ORIGIN, Vector3::X), f64::INFINITY, |_| count += 1);
+    assert_eq!(count, bounds.len());
+}
