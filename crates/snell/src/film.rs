@@ -93,7 +93,7 @@ impl Film {
 
     /// Scene-linear colours: each pixel the mean of its samples.
     pub fn develop(&self) -> Image<Rgb> {
-        Image::from_pixels(self.width, self.height, self.pixels.iter().map(PixelSum::mean).collect())
+        Image::from_fn(self.width, self.height, |x, y| self.pixels[y as usize * self.width as usize + x as usize].mean())
     }
 }
 

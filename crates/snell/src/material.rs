@@ -172,9 +172,9 @@ impl Material {
         compiled
     }
 
-    /// What an object without a material has: a light grey, matt surface.
+    /// What an object without a material has: a light grey, matt surface, reflectance 0.8.
     pub fn unspecified() -> Self {
-        let gray = Rgb::gray(0.7);
+        let gray = Rgb::gray(0.8);
         Self { base: Bsdf { ambient: gray, diffuse: gray, ..Bsdf::BLACK }, textured: Vec::new(), body: None }
     }
 

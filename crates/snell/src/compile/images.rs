@@ -3,27 +3,26 @@
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use snell_math::Rgb;
 use snell_scene::scene::ImageAsset;
 use snell_scene::{Diagnostic, Table};
 
 use crate::texture::TextureImage;
 
-/// The pictures in the order of the table. One that cannot be decoded becomes an error, and a black pixel in its place.
+/// The pictures in the order of the table. One that cannot be decoded becomes an error and is left out.
 pub fn decode_all(assets: &Table<ImageAsset>, diagnostics: &mut Vec<Diagnostic>) -> Vec<Arc<TextureImage>> {
     let assets: Vec<&ImageAsset> = assets.iter().collect();
     let decoded: Vec<Result<TextureImage, String>> = assets.par_iter().map(|asset| decode(asset)).collect();
-    decoded
-        .into_iter()
-        .zip(assets)
-        .map(|(image, asset)| {
-            Arc::new(image.unwrap_or_else(|reason| {
+    let mut images = Vec::with_capacity(assets.len());
+    for (image, asset) in decoded.into_iter().zip(assets) {
+        match image {
+            Ok(image) => images.push(Arc::new(image)),
+            Err(reason) => {
                 let message = format!("the picture \"{}\" cannot be used: {reason}", asset.name);
                 diagnostics.push(Diagnostic::error(message).at_optional(asset.span.clone(), "named here"));
-                TextureImage::solid(Rgb::BLACK)
-            }))
-        })
-        .collect()
+            }
+        }
+    }
+    images
 }
 
 fn decode(asset: &ImageAsset) -> Result<TextureImage, String> {

@@ -75,6 +75,9 @@ impl CompiledScene {
     pub fn build(scene: &Scene) -> Result<Self, CompileError> {
         let mut diagnostics = Vec::new();
         let images = images::decode_all(&scene.images, &mut diagnostics);
+        if !diagnostics.is_empty() {
+            return Err(CompileError { diagnostics });
+        }
         let textures = Textures::compile(&scene.textures, &images)
             .map_err(|error| diagnostics.push(Diagnostic::error(error.to_string())));
         let background = Background::compile(&scene.background, &images)
@@ -85,10 +88,9 @@ impl CompiledScene {
         let mut materials: Vec<Material> =
             scene.materials.iter().map(|material| Material::new(material, &textures)).collect();
         materials.push(Material::unspecified());
-        let (geometry, object_names) = objects::compile(scene, &materials, &mut diagnostics);
-        if diagnostics.iter().any(|d| d.severity == Severity::Error) {
+        let Some((geometry, object_names)) = objects::compile(scene, &materials, &mut diagnostics) else {
             return Err(CompileError { diagnostics });
-        }
+        };
         Ok(Self {
             geometry,
             lights: scene.lights.iter().map(Light::new).collect(),

@@ -5,7 +5,7 @@ use snell_math::{Bounds3, Transform};
 use snell_scene::scene::{self, Object, ObjectKind, Scene};
 use snell_scene::{Diagnostic, Id};
 
-use crate::accel::Bvh;
+use crate::accel::{BuildError, Bvh};
 use crate::csg::{CsgNode, CsgSolid};
 use crate::geometry::{Attributes, Geometry, NONE, ObjectSpace, Placement, Primitive, Space};
 use crate::material::Material;
@@ -18,10 +18,27 @@ const COPIED_PROTOTYPE: u64 = 4;
 /// More primitives than this are refused: a scene of prototypes within prototypes can ask for any number.
 const MAX_PRIMITIVES: u64 = 20_000_000;
 
-/// Compiles all objects of a scene. `materials` is the scene's list with the one for objects without material at its end.
-pub fn compile(scene: &Scene, materials: &[Material], diagnostics: &mut Vec<Diagnostic>) -> (Geometry, Vec<String>) {
-    let meshes: Vec<&scene::Mesh> = scene.meshes.iter().collect();
-    let meshes: Vec<TriangleMesh> = meshes.par_iter().map(|mesh| TriangleMesh::new(mesh)).collect();
+/// Compiles all objects of a scene, with their names. `materials` is the scene's list with the one for objects without
+/// material at its end. `None` where there is an error among the diagnostics.
+pub fn compile(
+    scene: &Scene,
+    materials: &[Material],
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Option<(Geometry, Vec<String>)> {
+    let descriptions: Vec<&scene::Mesh> = scene.meshes.iter().collect();
+    let compiled: Vec<Result<TriangleMesh, _>> = descriptions.par_iter().map(|mesh| TriangleMesh::new(mesh)).collect();
+    let mut meshes = Vec::with_capacity(compiled.len());
+    for (compiled, mesh) in compiled.into_iter().zip(scene.meshes.iter()) {
+        match compiled {
+            Ok(mesh) => meshes.push(mesh),
+            Err(error) => {
+                diagnostics.push(Diagnostic::error(format!("the mesh \"{}\" cannot be used: {error}", mesh.name)));
+            }
+        }
+    }
+    if meshes.len() < scene.meshes.len() {
+        return None;
+    }
     let transparent: Vec<bool> = materials.iter().map(|material| material.body.is_some()).collect();
     let mut compiler = Compiler {
         scene,
@@ -35,10 +52,10 @@ pub fn compile(scene: &Scene, materials: &[Material], diagnostics: &mut Vec<Diag
         diagnostics,
     };
     for prototype in scene.prototypes.iter() {
-        let space = compiler.space(&prototype.objects);
+        let space = compiler.space(&prototype.objects)?;
         compiler.prototypes.push(space);
     }
-    let world = compiler.space(&scene.objects);
+    let world = compiler.space(&scene.objects)?;
     let Compiler { prototypes, solids, names, .. } = compiler;
     let mesh_materials =
         scene.meshes.iter().map(|mesh| mesh.materials.iter().map(|id| id.index() as u32).collect()).collect();
@@ -46,7 +63,7 @@ pub fn compile(scene: &Scene, materials: &[Material], diagnostics: &mut Vec<Diag
     let default_material = materials.len() as u32 - 1;
     let geometry =
         Geometry { world, prototypes, meshes, mesh_materials, solids, transparent, textured, default_material };
-    (geometry, names)
+    Some((geometry, names))
 }
 
 struct Compiler<'a> {
@@ -78,14 +95,18 @@ struct Context {
 }
 
 impl Compiler<'_> {
-    /// Flattens objects into a space of their own.
-    fn space(&mut self, objects: &[Object]) -> Space {
+    /// Flattens objects into a space of their own; `None` where they are too many.
+    fn space(&mut self, objects: &[Object]) -> Option<Space> {
         let mut parts = Parts::default();
         let context = Context { space_from_parent: Transform::IDENTITY, material: NONE };
         for object in objects {
             self.add(object, context, &mut parts);
         }
-        parts.finish()
+        if self.primitives > MAX_PRIMITIVES {
+            return None;
+        }
+        let space = parts.finish();
+        space.map_err(|error| self.diagnostics.push(Diagnostic::error(error.to_string()))).ok()
     }
 
     fn add(&mut self, object: &Object, context: Context, parts: &mut Parts) {
@@ -291,7 +312,7 @@ impl Parts {
         self.object_spaces.len() as u32 - 1
     }
 
-    fn finish(self) -> Space {
+    fn finish(self) -> Result<Space, BuildError> {
         let count = self.bounded.len() + self.unbounded.len();
         let (mut primitives, mut attributes) = (Vec::with_capacity(count), Vec::with_capacity(count));
         let mut bounds = Vec::with_capacity(self.bounded.len());
@@ -304,8 +325,9 @@ impl Parts {
             primitives.push(primitive);
             attributes.push(attribute);
         }
-        let bvh = Bvh::build(&bounds);
-        Space { primitives, attributes, bounds, placements: self.placements, object_spaces: self.object_spaces, bvh }
+        let bvh = Bvh::build(&bounds)?;
+        let Self { placements, object_spaces, .. } = self;
+        Ok(Space { primitives, attributes, bounds, placements, object_spaces, bvh })
     }
 }
 

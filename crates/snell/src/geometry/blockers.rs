@@ -4,6 +4,8 @@ use std::ops::ControlFlow;
 
 use snell_math::Ray;
 
+use crate::accel::Candidate;
+
 use super::space::{NONE, Primitive, Space};
 use super::{Geometry, Hit, LocalHit, QueryScratch};
 

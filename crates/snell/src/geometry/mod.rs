@@ -232,7 +232,7 @@ impl Geometry {
         let of_file = match (primitive, local) {
             (Primitive::Mesh { mesh, .. }, LocalHit::Mesh(hit)) if attributes.material == NONE => {
                 let number = self.meshes[*mesh as usize].material_index(hit.triangle);
-                self.mesh_materials[*mesh as usize].get(number).copied().unwrap_or(NONE)
+                self.mesh_materials[*mesh as usize].get(usize::from(number)).copied().unwrap_or(NONE)
             }
             _ => NONE,
         };

@@ -5,7 +5,7 @@
 //! light, both leaving the surface.
 
 use snell_math::spectrum::Bands;
-use snell_math::{Rgb, Vector3};
+use snell_math::{Normal3, Rgb, Vector3};
 
 use super::{Integrator, scattering};
 use crate::camera::{Camera, Projection, Window};
@@ -154,7 +154,7 @@ impl Whitted {
             let direction = if interaction.geometric_normal.dot(direction) * interaction.geometric_normal.dot(wo) < 0.0 {
                 direction
             } else {
-                let flat = interaction.geometric_normal.face_forward(wo).as_vector();
+                let flat = interaction.geometric_normal.face_forward(wo);
                 refract(wo, flat, eta_before / eta_beyond).unwrap_or(-wo)
             };
             let ray = interaction.spawn_ray(direction);
@@ -267,7 +267,7 @@ fn spawn_reflected<O: Observer>(
         return;
     }
     let direction = reflect(wo, consistent_normal(interaction, wo));
-    let flat = interaction.geometric_normal.face_forward(wo).as_vector();
+    let flat = interaction.geometric_normal.face_forward(wo);
     // On a smooth mesh the shading normal may send it through the surface; then the flat one decides.
     let direction = if flat.dot(direction) > 0.0 { direction } else { reflect(wo, flat) };
     let ray = interaction.spawn_ray(direction);
@@ -276,8 +276,8 @@ fn spawn_reflected<O: Observer>(
 }
 
 /// The shading normal on the viewer's side; the geometric one where the shading normal is seen from behind.
-fn consistent_normal(interaction: &SurfaceInteraction, wo: Vector3) -> Vector3 {
+fn consistent_normal(interaction: &SurfaceInteraction, wo: Vector3) -> Normal3 {
     let side = if interaction.is_outward(wo) { 1.0 } else { -1.0 };
-    let shading = interaction.shading_normal.as_vector() * side;
-    if shading.dot(wo) > 0.0 { shading } else { interaction.geometric_normal.as_vector() * side }
+    let shading = interaction.shading_normal * side;
+    if shading.dot(wo) > 0.0 { shading } else { interaction.geometric_normal * side }
 }

@@ -4,7 +4,7 @@
 //! equally visible. A pixel is unsettled after the first pass where the samples in it and its eight neighbours differ by more
 //! than a threshold in any component, and after later ones where its own do.
 
-use snell_image::tone::ToneCurve;
+use snell_image::tone::{ToneCurve, exposure_scale};
 use snell_math::Rgb;
 use snell_math::color::linear_to_srgb;
 
@@ -19,6 +19,7 @@ pub struct Contrast {
     width: usize,
     height: usize,
     tone: ToneCurve,
+    /// The factor before the tone curve.
     exposure: f32,
     ranges: Vec<Range>,
 }
@@ -54,7 +55,7 @@ impl Contrast {
             width: width as usize,
             height: height as usize,
             tone: settings.tone_curve(),
-            exposure: settings.exposure,
+            exposure: exposure_scale(settings.exposure),
             ranges: vec![Range::EMPTY; pixels],
         }
     }
@@ -62,7 +63,8 @@ impl Contrast {
     /// Takes note of samples of one pixel.
     pub fn add(&mut self, pixel: usize, samples: &[Rgb]) {
         for &sample in samples {
-            let shown = self.tone.apply(sample, self.exposure).map(|c| linear_to_srgb(c.clamp(0.0, 1.0))).to_array();
+            let toned = self.tone.apply(sample * self.exposure);
+            let shown = toned.map(|c| linear_to_srgb(c.clamp(0.0, 1.0))).to_array();
             self.ranges[pixel] = self.ranges[pixel].including(&Range { low: shown, high: shown });
         }
     }

@@ -4,7 +4,7 @@ use snell_math::{Normal3, Point3, Transform, Vector3};
 
 /// How far inside a surface its pattern is read, relative to the magnitude of the coordinates: about 4000 times the
 /// rounding error of a coordinate, and far below anything that can be seen.
-pub(super) const RELATIVE_INSET: f64 = 1.0 / (1_u64 << 40) as f64;
+pub const RELATIVE_INSET: f64 = 1.0 / (1_u64 << 40) as f64;
 
 /// A point of a surface, as textures see it.
 ///

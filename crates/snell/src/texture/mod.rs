@@ -46,7 +46,7 @@ mod tests;
 
 pub use background::{Background, BackgroundError};
 pub use compile::{TextureError, Textures};
-pub use coordinates::{Footprint, TextureCoordinates};
+pub use coordinates::{Footprint, RELATIVE_INSET, TextureCoordinates};
 pub use image::{TextureImage, TextureImageError};
 pub use ramp::RampError;
 pub use view::ViewProjection;
