@@ -1,9 +1,9 @@
 //! The index of refraction as a function of wavelength.
 //!
-//! The formulas are those of glass makers' data sheets and of the refractiveindex.info database (Polyanskiy, "Refractiveindex.info
-//! database of optical constants", Scientific Data 11, 94, 2024): its formula 1 is Sellmeier's with the poles given as
-//! wavelengths (square them), its formula 2 is Sellmeier's with the poles already squared. Vacuum wavelengths: nanometres at
-//! the door, micrometres inside the formulas. Indices have no unit.
+//! The formulas are those of glass makers' data sheets and of the refractiveindex.info database (Polyanskiy,
+//! "Refractiveindex.info database of optical constants", Scientific Data 11, 94, 2024): its formula 1 is Sellmeier's
+//! with the poles given as wavelengths (square them), its formula 2 is Sellmeier's with the poles already squared.
+//! Vacuum wavelengths: nanometres at the door, micrometres inside the formulas. Indices have no unit.
 
 /// Wavelengths of the spectral lines at which glass is measured, in nanometres (ISO 7944 and the Schott data sheets).
 pub mod fraunhofer {
@@ -26,14 +26,14 @@ pub const MIN_INDEX: f64 = 1e-3;
 /// The largest index that [`Dispersion::index`] gives.
 pub const MAX_INDEX: f64 = 1e3;
 
-/// The wavelengths, in nanometres, that formulas are evaluated at: from the far ultraviolet to one millimetre. Beyond, an
-/// index is the one of the nearer end.
+/// The wavelengths, in nanometres, that formulas are evaluated at: from the far ultraviolet to one millimetre. Beyond,
+/// an index is the one of the nearer end.
 const WAVELENGTHS_NM: [f64; 2] = [100.0, 1e6];
 /// How near, relative to λ², a Sellmeier formula may come to a pole.
 const POLE_MARGIN: f64 = 1e-3;
 
-/// An index of refraction, constant or by a dispersion formula. Wavelengths are vacuum wavelengths in micrometres inside the
-/// formulas and nanometres at the door.
+/// An index of refraction, constant or by a dispersion formula. Wavelengths are vacuum wavelengths in micrometres
+/// inside the formulas and nanometres at the door.
 ///
 /// ```
 /// use snell_math::Dispersion;
@@ -61,8 +61,8 @@ pub enum Dispersion {
 }
 
 impl Dispersion {
-    /// Cauchy's formula with two terms that has the given index at the d line and the given Abbe number V_d: what a glass
-    /// code such as 517642 says. An Abbe number that is not positive and finite gives a constant index.
+    /// Cauchy's formula with two terms that has the given index at the d line and the given Abbe number V_d: what a
+    /// glass code such as 517642 says. An Abbe number that is not positive and finite gives a constant index.
     ///
     /// ```
     /// let crown = snell_math::Dispersion::from_abbe_number(1.5168, 64.17);
@@ -81,9 +81,9 @@ impl Dispersion {
 
     /// The index of refraction at a vacuum wavelength in nanometres.
     ///
-    /// Always a number in [[`MIN_INDEX`], [`MAX_INDEX`]], whatever the formula and the wavelength: a wavelength at or beyond
-    /// the resonance (pole) of a Sellmeier formula that is nearest to the d line counts as one just before it, and a formula
-    /// that gives no real index gives the smallest.
+    /// Always a number in [[`MIN_INDEX`], [`MAX_INDEX`]], whatever the formula and the wavelength: a wavelength at or
+    /// beyond the resonance (pole) of a Sellmeier formula that is nearest to the d line counts as one just before it,
+    /// and a formula that gives no real index gives the smallest.
     #[inline]
     pub fn index(&self, wavelength_nm: f64) -> f64 {
         let micrometres = wavelength_nm.clamp(WAVELENGTHS_NM[0], WAVELENGTHS_NM[1]) * 1e-3;
@@ -105,8 +105,8 @@ impl Dispersion {
         }
     }
 
-    /// The Abbe number V_d = (n_d − 1) / (n_F − n_C): small where colours spread much. `None` where the index is the same at
-    /// the F and the C line.
+    /// The Abbe number V_d = (n_d − 1) / (n_F − n_C): small where colours spread much. `None` where the index is the
+    /// same at the F and the C line.
     pub fn abbe_number(&self) -> Option<f64> {
         let principal_dispersion = self.index(fraunhofer::HYDROGEN_F) - self.index(fraunhofer::HYDROGEN_C);
         (self.is_dispersive() && principal_dispersion != 0.0)
@@ -114,8 +114,8 @@ impl Dispersion {
     }
 }
 
-/// Sellmeier's n² at a squared wavelength in square micrometres, which is first brought between the two poles that enclose
-/// the d line.
+/// Sellmeier's n² at a squared wavelength in square micrometres, which is first brought between the two poles that
+/// enclose the d line.
 #[inline]
 fn sellmeier_squared(constant: f64, terms: &[(f64, f64)], squared: f64) -> f64 {
     const D_SQUARED: f64 = fraunhofer::HELIUM_D * fraunhofer::HELIUM_D * 1e-6;
@@ -225,7 +225,9 @@ mod tests {
             wavelength_nm in prop_oneof![any_number(), 1.0..2000.0f64],
         ) {
             let formulas = [
-                Dispersion::Constant(constant), Dispersion::Cauchy(coefficients), Dispersion::Sellmeier { constant, terms },
+                Dispersion::Constant(constant),
+                Dispersion::Cauchy(coefficients),
+                Dispersion::Sellmeier { constant, terms },
             ];
             for dispersion in formulas {
                 for wavelength_nm in [wavelength_nm, fraunhofer::HELIUM_D] {

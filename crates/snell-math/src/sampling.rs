@@ -1,20 +1,22 @@
 //! Where samples lie: fixed points in a pixel, and random numbers that are a function of what they are for.
 //!
-//! Nothing here has a state. The place of a pixel's sample depends on its index alone, and a random number on
-//! (seed, pixel, sample, dimension) alone, so a picture does not depend on threads, tiles or the number of samples, and the
+//! Nothing here has a state. The place of a pixel's sample depends on its index alone, and a random number on (seed,
+//! pixel, sample, dimension) alone, so a picture does not depend on threads, tiles or the number of samples, and the
 //! first N samples of a longer rendering are those of a shorter one.
 //!
-//! Follows: Sobol', "On the distribution of points in a cube", 1967 (the first two dimensions are a (0,2)-sequence in base 2,
-//! see Niederreiter 1992, definition 4.2); Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020; the permutation is
-//! Vegdahl's of the Laine–Karras kind; O'Neill, "PCG", 2014, as a hash after Jarzynski and Olano, "Hash Functions for GPU
-//! Rendering", JCGT 9(3), 2020.
+//! Follows: Sobol', "On the distribution of points in a cube", 1967 (the first two dimensions are a (0,2)-sequence in
+//! base 2, see Niederreiter 1992, definition 4.2); Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020; the
+//! permutation is Vegdahl's of the Laine–Karras kind; O'Neill, "PCG", 2014, as a hash after Jarzynski and Olano, "Hash
+//! Functions for GPU Rendering", JCGT 9(3), 2020.
 
-/// The place in its pixel of sample `index`: two numbers in [0, 1), u to the right and v down; (½, ½) is the pixel's centre.
+/// The place in its pixel of sample `index`: two numbers in [0, 1), u to the right and v down; (½, ½) is the pixel's
+/// centre.
 ///
-/// These are the points of Sobol's sequence in two dimensions after a fixed Owen scrambling and a digital shift that puts
-/// sample 0 into the centre. Both keep the sequence a (0,2)-sequence: of 2ᵏ consecutive points that start at a multiple of
-/// 2ᵏ, exactly one is in each of the 2ᵏ equal boxes of every shape 2⁻ᵃ × 2⁻ᵇ, a + b = k. The scrambling was chosen among many
-/// for the first 4 to 64 points to be far apart (also from those of the neighbouring pixels) and to balance about the centre.
+/// These are the points of Sobol's sequence in two dimensions after a fixed Owen scrambling and a digital shift that
+/// puts sample 0 into the centre. Both keep the sequence a (0,2)-sequence: of 2ᵏ consecutive points that start at a
+/// multiple of 2ᵏ, exactly one is in each of the 2ᵏ equal boxes of every shape 2⁻ᵃ × 2⁻ᵇ, a + b = k. The scrambling was
+/// chosen among many for the first 4 to 64 points to be far apart (also from those of the neighbouring pixels) and to
+/// balance about the centre.
 ///
 /// ```
 /// use snell_math::sampling::pixel_sample;
@@ -37,7 +39,8 @@ pub fn pixel_sample(index: u32) -> [f64; 2] {
 /// Point `index` of Sobol's sequence in two dimensions, in units of 2⁻³².
 #[inline]
 fn sobol(index: u32) -> [u32; 2] {
-    // The second dimension's direction numbers belong to the polynomial x + 1: each is the one before, plus it shifted by one.
+    // The second dimension's direction numbers belong to the polynomial x + 1: each is the one before, plus it shifted
+    // by one.
     let (mut second, mut direction, mut remaining) = (0, 1 << 31, index);
     while remaining != 0 {
         if remaining & 1 == 1 {

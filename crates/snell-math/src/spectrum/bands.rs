@@ -1,15 +1,17 @@
-//! The bands into which a dispersive surface splits white light: a wavelength that is traced, and the colour it carries.
+//! The bands into which a dispersive surface splits white light: a wavelength that is traced, and the colour it
+//! carries.
 //!
-//! A ray of white light that meets a dispersive surface goes on as one ray for each band. The colour of a band is what the
-//! CIE 1931 observer sees of equal energy in its wavelengths, in linear sRGB, with each channel scaled so that all bands
-//! together are white. Spectral colours are outside the gamut, so some components are negative: they are kept, because it is
-//! their sum over overlapping bands that is the right colour.
+//! A ray of white light that meets a dispersive surface goes on as one ray for each band. The colour of a band is what
+//! the CIE 1931 observer sees of equal energy in its wavelengths, in linear sRGB, with each channel scaled so that all
+//! bands together are white. Spectral colours are outside the gamut, so some components are negative: they are kept,
+//! because it is their sum over overlapping bands that is the right colour.
 //!
-//! Where the bands are: dispersion sets each band's image beside the next one's, and what must be small is the gap between
-//! them where there is much colour to see. Deflection goes about as 1/λ² (Cauchy's law), so a band of width dλ is 2λ⁻³ dλ wide
-//! in the picture; it holds the colour |r| + |g| + |b|. The density of bands is the geometric mean of the two. Of the densities
-//! tried (equal steps in λ, in 1/λ², in colour, in luminance; exponents ⅓ and ½) it is the one whose picture of a slit through
-//! a prism of N-BK7 or N-SF11 is nearest to the true one, or nearly so, from 8 to 32 bands and for narrow and wide slits.
+//! Where the bands are: dispersion sets each band's image beside the next one's, and what must be small is the gap
+//! between them where there is much colour to see. Deflection goes about as 1/λ² (Cauchy's law), so a band of width dλ
+//! is 2λ⁻³ dλ wide in the picture; it holds the colour |r| + |g| + |b|. The density of bands is the geometric mean of
+//! the two. Of the densities tried (equal steps in λ, in 1/λ², in colour, in luminance; exponents ⅓ and ½) it is the
+//! one whose picture of a slit through a prism of N-BK7 or N-SF11 is nearest to the true one, or nearly so, from 8 to
+//! 32 bands and for narrow and wide slits.
 
 use super::{VISIBLE_NM, color_matching, xyz_to_linear_srgb};
 use crate::Rgb;
@@ -28,8 +30,8 @@ pub struct Band {
 
 /// White light, split into bands of ascending wavelength that cover the visible range.
 ///
-/// The weights sum to exactly (1, 1, 1), added in any order, and every sum over some of them is exact too: all are multiples
-/// of 2⁻²⁰ and no such sum reaches 16.
+/// The weights sum to exactly (1, 1, 1), added in any order, and every sum over some of them is exact too: all are
+/// multiples of 2⁻²⁰ and no such sum reaches 16.
 ///
 /// ```
 /// use snell_math::{Rgb, spectrum::Bands};
@@ -51,8 +53,8 @@ impl Bands {
     /// The most bands that white light is split into.
     pub const MAX: u32 = 64;
 
-    /// Splits white light into `count` bands; 0 counts as 1, more than [`Self::MAX`] as that. A single band is white and
-    /// stands at the sodium D line, where the classical index of refraction is given.
+    /// Splits white light into `count` bands; 0 counts as 1, more than [`Self::MAX`] as that. A single band is white
+    /// and stands at the sodium D line, where the classical index of refraction is given.
     #[must_use]
     pub fn new(count: u32) -> Self {
         if count <= 1 {
@@ -247,8 +249,8 @@ mod tests {
         assert!(quadrature_error(&wrong, ramp) > 0.005);
     }
 
-    /// The picture of a white slit through a thin prism of N-BK7, its two edge colours 1 apart and the slit `slit` wide:
-    /// the root mean square difference between what the bands give and what the spectrum gives.
+    /// The picture of a white slit through a thin prism of N-BK7, its two edge colours 1 apart and the slit `slit`
+    /// wide: the root mean square difference between what the bands give and what the spectrum gives.
     fn slit_error(bands: &Bands, slit: f64) -> f64 {
         let glass = crate::Dispersion::Sellmeier {
             constant: 0.0,

@@ -1,8 +1,8 @@
-//! Light as a function of wavelength, and the colour it has: from spectra to tristimulus values to scene-linear [`Rgb`], and
-//! the [`Bands`] into which a dispersive surface splits white light.
+//! Light as a function of wavelength, and the colour it has: from spectra to tristimulus values to scene-linear
+//! [`Rgb`], and the [`Bands`] into which a dispersive surface splits white light.
 //!
-//! Wavelengths are nanometres in vacuum. Tristimulus values (X, Y, Z) are those of the CIE 1931 standard observer, scaled so
-//! that the equal-energy spectrum of radiance 1 has Y = 1.
+//! Wavelengths are nanometres in vacuum. Tristimulus values (X, Y, Z) are those of the CIE 1931 standard observer,
+//! scaled so that the equal-energy spectrum of radiance 1 has Y = 1.
 
 mod bands;
 mod observer;
@@ -56,8 +56,8 @@ pub fn spectrum_to_rgb(radiance: impl FnMut(f64) -> f64) -> Rgb {
     xyz_to_rgb(spectrum_to_xyz(radiance))
 }
 
-/// Planck's law: the spectral radiance of a black body, in watts per steradian, square metre and metre of wavelength; 0 where
-/// the temperature (kelvin) or the wavelength is not positive.
+/// Planck's law: the spectral radiance of a black body, in watts per steradian, square metre and metre of wavelength; 0
+/// where the temperature (kelvin) or the wavelength is not positive.
 #[must_use]
 pub fn blackbody(temperature_kelvin: f64, wavelength_nm: f64) -> f64 {
     // The constants of the SI of 2019, exact by definition.
@@ -75,7 +75,8 @@ pub fn blackbody(temperature_kelvin: f64, wavelength_nm: f64) -> f64 {
     if radiance.is_nan() { 0.0 } else { radiance }
 }
 
-/// The colour of a black body, scaled to luminance Y = 1. Temperatures outside 500 to 10⁶ kelvin count as the nearer of these.
+/// The colour of a black body, scaled to luminance Y = 1. Temperatures outside 500 to 10⁶ kelvin count as the nearer of
+/// these.
 #[must_use]
 pub fn blackbody_rgb(temperature_kelvin: f64) -> Rgb {
     let temperature = if temperature_kelvin > 500.0 { temperature_kelvin.min(1e6) } else { 500.0 };

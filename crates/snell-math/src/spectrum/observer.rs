@@ -1,7 +1,8 @@
 //! The CIE 1931 2° standard colorimetric observer: how strongly each wavelength excites X, Y and Z.
 //!
-//! The values are those of CIE publication 15 (ISO/CIE 11664-1), every 5 nm. Between them: cubic interpolation through the four
-//! nearest (CIE 167:2005 advises third order or higher), which is within 2.5e-4 of the CIE's table of every nanometre.
+//! The values are those of CIE publication 15 (ISO/CIE 11664-1), every 5 nm. Between them: cubic interpolation through
+//! the four nearest (CIE 167:2005 advises third order or higher), which is within 2.5e-4 of the CIE's table of every
+//! nanometre.
 
 /// The wavelengths, in nanometres, outside of which the observer sees nothing.
 pub const VISIBLE_NM: [f64; 2] = [360.0, 830.0];

@@ -3,8 +3,8 @@
 use super::*;
 use crate::dispersion::fraunhofer;
 
-/// What our code gives for a row of the reference table: (X, Y, Z), where the row's spectrum has a formula. The spectrum is read
-/// `aside` nanometres beside where it should be: 0, or else a planted defect.
+/// What our code gives for a row of the reference table: (X, Y, Z), where the row's spectrum has a formula. The
+/// spectrum is read `aside` nanometres beside where it should be: 0, or else a planted defect.
 fn tristimulus(name: &str, aside: f64) -> Option<[f64; 3]> {
     let scaled = |xyz: [f64; 3]| xyz.map(|value| value / xyz[1]);
     if let Some(kelvin) = name.strip_prefix("blackbody ") {

@@ -1,11 +1,12 @@
 //! Fresnel's equations: how much light a smooth boundary between two transparent media reflects.
 //!
-//! Follows: Born and Wolf, "Principles of Optics", 7th edition, section 1.5.2. s is the polarisation perpendicular to the plane
-//! of incidence, p the parallel one; r_p is positive at normal incidence into the denser medium, r_s negative.
+//! Follows: Born and Wolf, "Principles of Optics", 7th edition, section 1.5.2. s is the polarisation perpendicular to
+//! the plane of incidence, p the parallel one; r_p is positive at normal incidence into the denser medium, r_s
+//! negative.
 //!
-//! The numerators of the textbook's r_s = (η_i c_i − η_t c_t) / (η_i c_i + η_t c_t) and r_p = (η_t c_i − η_i c_t) / (η_t c_i +
-//! η_i c_t) cancel where the indices are nearly equal (air: 1.0002926). Multiplied by their sums and with Snell's law put in,
-//! both become η_i² − η_t² times something harmless, which keeps all digits.
+//! The numerators of the textbook's r_s = (η_i c_i − η_t c_t) / (η_i c_i + η_t c_t) and r_p = (η_t c_i − η_i c_t) /
+//! (η_t c_i + η_i c_t) cancel where the indices are nearly equal (air: 1.0002926). Multiplied by their sums and with
+//! Snell's law put in, both become η_i² − η_t² times something harmless, which keeps all digits.
 
 use snell_math::portable;
 
@@ -26,8 +27,8 @@ pub struct FresnelAmplitudes {
     pub t_p: f64,
 }
 
-/// Fresnel's amplitudes for light that arrives from the side of index `eta_i` with `cos_i` in [0, 1] (values outside count as
-/// the nearer end); `None` under total internal reflection and at the critical angle itself.
+/// Fresnel's amplitudes for light that arrives from the side of index `eta_i` with `cos_i` in [0, 1] (values outside
+/// count as the nearer end); `None` under total internal reflection and at the critical angle itself.
 ///
 /// Power follows from them: r² is reflected and t² · η_t cos θ_t / (η_i cos θ_i) is transmitted.
 #[inline]
@@ -59,8 +60,8 @@ pub fn fresnel_amplitudes(cos_i: f64, eta_i: f64, eta_t: f64) -> Option<FresnelA
     })
 }
 
-/// The shares of power that a smooth boundary reflects, perpendicular (s) and parallel (p) to the plane of incidence, each in
-/// [0, 1]. Arguments as in [`fresnel_dielectric`].
+/// The shares of power that a smooth boundary reflects, perpendicular (s) and parallel (p) to the plane of incidence,
+/// each in [0, 1]. Arguments as in [`fresnel_dielectric`].
 #[inline]
 #[must_use]
 pub fn fresnel_dielectric_polarized(cos_i: f64, eta_i: f64, eta_t: f64) -> [f64; 2] {
@@ -72,11 +73,11 @@ pub fn fresnel_dielectric_polarized(cos_i: f64, eta_i: f64, eta_t: f64) -> [f64;
     }
 }
 
-/// The share of unpolarised light that a smooth boundary reflects, in [0, 1]: exactly 1 under total internal reflection and at
-/// grazing incidence, exactly 0 where the indices are equal. What is not reflected is transmitted.
+/// The share of unpolarised light that a smooth boundary reflects, in [0, 1]: exactly 1 under total internal reflection
+/// and at grazing incidence, exactly 0 where the indices are equal. What is not reflected is transmitted.
 ///
-/// The light arrives from the side of index `eta_i`; `cos_i` is the cosine of its angle with the normal, in [0, 1] (values
-/// outside count as the nearer end).
+/// The light arrives from the side of index `eta_i`; `cos_i` is the cosine of its angle with the normal, in [0, 1]
+/// (values outside count as the nearer end).
 ///
 /// ```
 /// use snell::optics::fresnel_dielectric;
@@ -90,8 +91,8 @@ pub fn fresnel_dielectric(cos_i: f64, eta_i: f64, eta_t: f64) -> f64 {
     0.5 * (s + p)
 }
 
-/// Brewster's angle in radians: light that arrives under it from `eta_i` towards `eta_t` is reflected without any parallel
-/// polarisation.
+/// Brewster's angle in radians: light that arrives under it from `eta_i` towards `eta_t` is reflected without any
+/// parallel polarisation.
 #[inline]
 #[must_use]
 pub fn brewster_angle(eta_i: f64, eta_t: f64) -> f64 {

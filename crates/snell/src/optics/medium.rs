@@ -1,7 +1,7 @@
 //! Light inside a body: what absorption leaves, and where scattering sends it.
 //!
-//! Follows: Beer and Lambert's law; Henyey and Greenstein, "Diffuse radiation in the galaxy", Astrophysical Journal 93, 1941.
-//! Coefficients are per unit of length of the space in which distances are measured (world units).
+//! Follows: Beer and Lambert's law; Henyey and Greenstein, "Diffuse radiation in the galaxy", Astrophysical Journal 93,
+//! 1941. Coefficients are per unit of length of the space in which distances are measured (world units).
 
 use std::f64::consts::PI;
 
@@ -29,15 +29,15 @@ pub fn beer_lambert(coefficient: Rgb, distance: f64) -> Rgb {
     })
 }
 
-/// Henyey and Greenstein's phase function: the density per steradian, over directions, of light scattered by an angle whose
-/// cosine is `cos_scatter`, 1 straight on and −1 straight back.
+/// Henyey and Greenstein's phase function: the density per steradian, over directions, of light scattered by an angle
+/// whose cosine is `cos_scatter`, 1 straight on and −1 straight back.
 ///
-/// With both directions leaving the point, `wo` against the arriving ray, `cos_scatter` is −(wo · wi). `anisotropy` is g, the
-/// mean of that cosine, in (−1, 1); values beyond ±0.999999 count as that.
+/// With both directions leaving the point, `wo` against the arriving ray, `cos_scatter` is −(wo · wi). `anisotropy` is
+/// g, the mean of that cosine, in (−1, 1); values beyond ±0.999999 count as that.
 ///
-/// Normalisation: the function integrates to 1 over the sphere (books after Chandrasekhar have 4π or the albedo there), so it is
-/// its own sampling density, and the radiance scattered along a stretch of unit length is the scattering coefficient times the
-/// integral of this times the arriving radiance.
+/// Normalisation: the function integrates to 1 over the sphere (books after Chandrasekhar have 4π or the albedo there),
+/// so it is its own sampling density, and the radiance scattered along a stretch of unit length is the scattering
+/// coefficient times the integral of this times the arriving radiance.
 ///
 /// ```
 /// use snell::optics::henyey_greenstein;

@@ -1,8 +1,10 @@
-//! What light does at a boundary between two media and inside them: pure functions of directions, indices and distances.
+//! What light does at a boundary between two media and inside them: pure functions of directions, indices and
+//! distances.
 //!
-//! Conventions, those of the lecture: `wo` leaves the surface, against the incident ray; the normal is on the same side as
-//! `wo`; all directions have unit length; η = η_i / η_t is the index of refraction on the side of the incident ray over that on
-//! the other. Indices come from [`snell_math::Dispersion::index`], angles are radians, cosines are those with the normal.
+//! Conventions, those of the lecture: `wo` leaves the surface, against the incident ray; the normal is on the same side
+//! as `wo`; all directions have unit length; η = η_i / η_t is the index of refraction on the side of the incident ray
+//! over that on the other. Indices come from [`snell_math::Dispersion::index`], angles are radians, cosines are those
+//! with the normal.
 
 mod fresnel;
 mod medium;

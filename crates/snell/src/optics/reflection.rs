@@ -1,6 +1,7 @@
 //! The mirrored direction.
 //!
-//! Follows: CS5310, lecture 3, "Reflection"; Whitted, "An Improved Illumination Model for Shaded Display", CACM 23(6), 1980.
+//! Follows: CS5310, lecture 3, "Reflection"; Whitted, "An Improved Illumination Model for Shaded Display", CACM 23(6),
+//! 1980.
 
 use snell_math::{Normal3, Vector3};
 

@@ -1,7 +1,7 @@
 //! The refracted direction, by Snell's law, and total internal reflection.
 //!
-//! Follows: CS5310, lecture 3, "Refraction"; Heckbert and Hanrahan, "Beam Tracing Polygonal Objects", SIGGRAPH 1984, appendix.
-//! η = η_i / η_t throughout; cosines with the normal are those of the angles in [0, π/2].
+//! Follows: CS5310, lecture 3, "Refraction"; Heckbert and Hanrahan, "Beam Tracing Polygonal Objects", SIGGRAPH 1984,
+//! appendix. η = η_i / η_t throughout; cosines with the normal are those of the angles in [0, π/2].
 
 use snell_math::{Normal3, Vector3, portable};
 
@@ -25,9 +25,9 @@ pub fn cos_transmitted(cos_i: f64, eta: f64) -> Option<f64> {
 /// The direction in which light goes on behind a boundary, or `None` where there is total internal reflection:
 /// T = (η (N·I) − √(1 − η² (1 − (N·I)²))) N − η I.
 ///
-/// `wo` is the lecture's I: it leaves the surface, against the incident ray, on the side of `normal`. `eta` is the index of
-/// refraction there over that behind. The result leaves the surface on the other side and is made unit length after rounding.
-/// At the critical angle itself it is tangent to the surface, and carries no light.
+/// `wo` is the lecture's I: it leaves the surface, against the incident ray, on the side of `normal`. `eta` is the
+/// index of refraction there over that behind. The result leaves the surface on the other side and is made unit length
+/// after rounding. At the critical angle itself it is tangent to the surface, and carries no light.
 ///
 /// ```
 /// use snell::optics::refract;
@@ -45,8 +45,8 @@ pub fn refract(wo: Vector3, normal: Normal3, eta: f64) -> Option<Vector3> {
     Some((normal.as_vector() * (eta * cos_i - cos_t) - wo * eta).normalize())
 }
 
-/// The angle of incidence in radians beyond which all light is reflected, for light that goes from `eta_i` towards `eta_t`;
-/// `None` where the far side is not the thinner one.
+/// The angle of incidence in radians beyond which all light is reflected, for light that goes from `eta_i` towards
+/// `eta_t`; `None` where the far side is not the thinner one.
 ///
 /// ```
 /// use snell::optics::critical_angle;

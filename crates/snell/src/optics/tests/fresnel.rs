@@ -1,5 +1,5 @@
-//! Fresnel's equations against a table made with another implementation, against their other textbook form, and by the laws
-//! that hold between the two sides of a boundary.
+//! Fresnel's equations against a table made with another implementation, against their other textbook form, and by the
+//! laws that hold between the two sides of a boundary.
 
 use proptest::prelude::*;
 use snell_math::portable;
@@ -12,8 +12,8 @@ use crate::optics::{
 
 const INDICES: [f64; 8] = [1.0, 1.000_036, 1.000_292_6, 1.31, 1.333, 1.5, 1.9, 2.419];
 
-/// ∫ 2 R(c) c dc over [0, 1]: the share of diffuse light that is reflected. Midpoints in √c, in two pieces, because R has a
-/// root's edge at the critical angle.
+/// ∫ 2 R(c) c dc over [0, 1]: the share of diffuse light that is reflected. Midpoints in √c, in two pieces, because R
+/// has a root's edge at the critical angle.
 fn diffuse_reflectance(eta_i: f64, eta_t: f64) -> f64 {
     let edge = critical_angle(eta_i, eta_t).map_or(0.0, portable::cos);
     let steps = 20_000;
@@ -51,8 +51,8 @@ fn every_index_of_the_reference_table() {
         };
         let row: Vec<&str> = numbers.split(',').collect();
         let n: f64 = row[0].parse().unwrap();
-        // The table has twelve digits; but its diffuse reflectances come from a closed form that cancels where n is near
-        // one (helium's is 3e-4 off, as sixty decimal digits show), and ours from a quadrature.
+        // The table has twelve digits; but its diffuse reflectances come from a closed form that cancels where n is
+        // near one (helium's is 3e-4 off, as sixty decimal digits show), and ours from a quadrature.
         let normal = fresnel_dielectric(1.0, 1.0, n);
         let columns = [
             (normal, 5e-12, 0.0),
@@ -144,7 +144,8 @@ fn a_cosine_out_of_range_is_the_nearest_one() {
     assert!((0.0..=1.0).contains(&fresnel_dielectric(f64::NAN, 1.0, 1.5)));
 }
 
-/// The share of power that goes through, from the amplitudes; `true` plants a defect: the beam's change of width is forgotten.
+/// The share of power that goes through, from the amplitudes; `true` plants a defect: the beam's change of width is
+/// forgotten.
 fn transmitted(cos_i: f64, eta_i: f64, eta_t: f64, forget_width: bool) -> Option<[f64; 2]> {
     let FresnelAmplitudes { cos_t, t_s, t_p, .. } = fresnel_amplitudes(cos_i, eta_i, eta_t)?;
     let factor = eta_t / eta_i * if forget_width { 1.0 } else { cos_t / cos_i };

@@ -4,8 +4,8 @@ use snell_math::{Normal3, Point3, Vector3, portable};
 
 use crate::optics::refract;
 
-/// One spherical face of a lens on the z axis: where it meets the axis, its radius (positive where the centre is at greater z),
-/// and the indices before and behind it.
+/// One spherical face of a lens on the z axis: where it meets the axis, its radius (positive where the centre is at
+/// greater z), and the indices before and behind it.
 struct Face {
     vertex: f64,
     radius: f64,
@@ -84,7 +84,8 @@ fn spherical_aberration_grows_with_the_square_of_the_height() {
     assert!((ratio - 4.0).abs() < 1e-2, "{ratio}");
 }
 
-/// The angle by which a prism of this apex angle turns a ray that meets it at `incidence`; `None` where it does not get out.
+/// The angle by which a prism of this apex angle turns a ray that meets it at `incidence`; `None` where it does not get
+/// out.
 fn prism_deviation(n: f64, apex: f64, incidence: f64) -> Option<f64> {
     // Faces that lean by half the apex angle to either side of the y axis; light travels towards +x.
     let (cos, sin) = (portable::cos(0.5 * apex), portable::sin(0.5 * apex));
