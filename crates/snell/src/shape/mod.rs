@@ -1,7 +1,37 @@
 //! The shapes: one file each, with intersection, crossings, surface and bounds. Plain `f64` geometry that knows nothing of
 //! materials, scenes or hierarchies.
+//!
+//! A ray may have a direction of any length, and t is in units of it: a ray carried into a shape's space keeps its t. A
+//! ray that only touches a shape does not hit it. Rays with NaN, infinite or zero directions hit nothing.
+//!
+//! Rays spawned on a surface start at `point + normal * error` on the outside, `point − normal * error` on the inside,
+//! with the geometric normal and [`SurfacePoint::error`] as it is (once is enough, see [`rounding`]), and are traced with
+//! `t_min` 0: no other epsilon is needed.
 
-use snell_math::{Normal3, Point3};
+mod cuboid;
+mod disk;
+mod frame;
+mod frustum;
+mod plane;
+mod rectangle;
+pub(crate) mod rounding;
+mod span;
+mod sphere;
+#[cfg(test)]
+mod tests;
+mod torus;
+
+use snell_math::{Bounds3, Normal3, Point3, Ray, Transform};
+
+pub use cuboid::Cuboid;
+pub use disk::Disk;
+pub use frustum::Frustum;
+pub use plane::Plane;
+pub use rectangle::Rectangle;
+pub use sphere::Sphere;
+pub use torus::Torus;
+
+use rounding::gamma;
 
 /// Where a ray meets a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +58,8 @@ pub struct Crossing {
 pub struct SurfacePoint {
     /// The point, brought back onto the surface as well as rounding allows.
     pub point: Point3,
-    /// How far, at most, `point` is from the true surface, in units of length: what spawned rays must be offset by.
+    /// How far, at most, `point` is from the true surface, in units of length, plus what intersection of a spawned ray
+    /// can be wrong by: what spawned rays must be offset by.
     pub error: f64,
     /// The geometric normal: unit length, outward.
     pub geometric_normal: Normal3,
@@ -36,4 +67,207 @@ pub struct SurfacePoint {
     pub shading_normal: Normal3,
     /// The surface coordinates, see [`snell_scene::scene::Shape`] for what they mean on each shape.
     pub uv: [f64; 2],
+}
+
+impl SurfacePoint {
+    /// On a surface whose shading normal is its geometric one, with (u, v) still 0.
+    #[inline]
+    pub(crate) fn flat(point: Point3, normal: Normal3, error: f64) -> Self {
+        Self { point, error, geometric_normal: normal, shading_normal: normal, uv: [0.0, 0.0] }
+    }
+
+    /// The same surface in the space that `outer_from_inner` leads to, where rays are spawned that will be carried back
+    /// by [`Transform::inverse_ray`] before they meet it again. The error grows by the rounding of both ways.
+    ///
+    /// An offset by e along the outer normal lifts the carried ray's origin by e h over the inner surface, h the length
+    /// of the carried normal before it is normalised; so inner errors are divided by h. A point carried forth and back
+    /// is wrong by the rounding of two affine maps, `gamma(4)` of the sum of the absolute values of all terms each, and
+    /// by that of the inverse matrix itself, which is about as much again.
+    #[must_use]
+    pub fn carried(&self, outer_from_inner: &Transform) -> Self {
+        let carried = outer_from_inner.normal(self.geometric_normal);
+        let lift = carried.as_vector().length();
+        let forth = outer_from_inner.affine();
+        let back = outer_from_inner.inverse();
+        let back = back.affine();
+        let forth_terms = forth.matrix3.abs() * self.point.0.abs() + forth.translation.abs();
+        let back_terms = back.matrix3.abs() * forth_terms + back.translation.abs();
+        let rounding = gamma(16) * forth_terms.element_sum();
+        let error = rounding + (self.error + gamma(32) * back_terms.element_sum()) / lift;
+        Self {
+            point: outer_from_inner.point(self.point),
+            error,
+            geometric_normal: carried.normalize(),
+            shading_normal: outer_from_inner.normal(self.shading_normal).normalize(),
+            uv: self.uv,
+        }
+    }
+}
+
+/// A shape ready to be traced, in its own space.
+///
+/// ```
+/// use snell::math::{Point3, Ray, Vector3};
+/// use snell::shape::{Shape, Sphere};
+/// let shape = Shape::Sphere(Sphere::new(Point3::ORIGIN, 1.0));
+/// let ray = Ray::new(Point3::new(0.0, 0.0, 5.0), Vector3::new(0.0, 0.0, -1.0));
+/// let hit = shape.intersect(&ray, 0.0, f64::INFINITY).expect("the ray aims at the centre");
+/// assert_eq!(hit.t, 4.0);
+/// let surface = shape.surface(&ray, hit);
+/// assert_eq!(surface.point, Point3::new(0.0, 0.0, 1.0));
+/// // A shadow ray from there does not meet the sphere again.
+/// let origin = surface.point + surface.geometric_normal.as_vector() * surface.error;
+/// assert!(shape.intersect(&Ray::new(origin, Vector3::X), 0.0, f64::INFINITY).is_none());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape {
+    /// See [`Sphere`]. Solid.
+    Sphere(Sphere),
+    /// See [`Plane`]. Solid: the half-space below it.
+    Plane(Plane),
+    /// See [`Disk`].
+    Disk(Disk),
+    /// See [`Rectangle`].
+    Rectangle(Rectangle),
+    /// See [`Cuboid`]. Solid.
+    Box(Cuboid),
+    /// See [`Frustum`]. Solid where capped.
+    Cylinder(Frustum),
+    /// See [`Frustum`]. Solid where capped.
+    Cone(Frustum),
+    /// See [`Torus`]. Solid.
+    Torus(Torus),
+}
+
+/// Runs the same expression on the shape within, matched once.
+macro_rules! each {
+    ($shape:expr, $inner:ident => $call:expr) => {
+        match $shape {
+            Shape::Sphere($inner) => $call,
+            Shape::Plane($inner) => $call,
+            Shape::Disk($inner) => $call,
+            Shape::Rectangle($inner) => $call,
+            Shape::Box($inner) => $call,
+            Shape::Cylinder($inner) | Shape::Cone($inner) => $call,
+            Shape::Torus($inner) => $call,
+        }
+    };
+}
+
+impl Shape {
+    /// From the description; `None` for a mesh, which is not one shape but many triangles.
+    pub fn new(description: &snell_scene::scene::Shape) -> Option<Self> {
+        use snell_scene::scene::Shape as Description;
+        Some(match *description {
+            Description::Sphere { center, radius } => Self::Sphere(Sphere::new(center, radius)),
+            Description::Plane { point, normal } => Self::Plane(Plane::new(point, normal)),
+            Description::Disk { center, normal, radius, inner_radius } => {
+                Self::Disk(Disk::new(center, normal, radius, inner_radius))
+            }
+            Description::Rectangle { corner, edges } => Self::Rectangle(Rectangle::new(corner, edges)),
+            Description::Box { min, max } => Self::Box(Cuboid::new(min, max)),
+            Description::Cylinder { base, top, radius, capped } => {
+                Self::Cylinder(Frustum::new(base, radius, top, radius, capped))
+            }
+            Description::Cone { base, base_radius, top, top_radius, capped } => {
+                Self::Cone(Frustum::new(base, base_radius, top, top_radius, capped))
+            }
+            Description::Torus { center, axis, major_radius, minor_radius } => {
+                Self::Torus(Torus::new(center, axis, major_radius, minor_radius))
+            }
+            Description::Mesh(_) => return None,
+        })
+    }
+
+    /// The nearest hit with `t_min < t < t_max`.
+    #[inline]
+    pub fn intersect(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<ShapeHit> {
+        each!(self, shape => shape.intersect(ray, t_min, t_max))
+    }
+
+    /// The surface at a hit of this ray.
+    pub fn surface(&self, ray: &Ray, hit: ShapeHit) -> SurfacePoint {
+        let surface = self.surface_geometry(ray, hit);
+        SurfacePoint { uv: self.uv(surface.point, hit.part), ..surface }
+    }
+
+    /// As [`Shape::surface`], but with (u, v) left 0: for materials without textures, as the angles cost more than all
+    /// the rest.
+    #[inline]
+    pub fn surface_geometry(&self, ray: &Ray, hit: ShapeHit) -> SurfacePoint {
+        each!(self, shape => shape.surface_geometry(ray, hit))
+    }
+
+    /// The surface coordinates of a point on a part of the surface, in the shape's own space.
+    pub fn uv(&self, point: Point3, part: u32) -> [f64; 2] {
+        match self {
+            Self::Sphere(shape) => shape.uv(point),
+            Self::Plane(shape) => shape.uv(point),
+            Self::Disk(shape) => shape.uv(point),
+            Self::Rectangle(shape) => shape.uv(point),
+            Self::Box(shape) => shape.uv(point, part),
+            Self::Cylinder(shape) | Self::Cone(shape) => shape.uv(point),
+            Self::Torus(shape) => shape.uv(point),
+        }
+    }
+
+    /// True where it has an inside.
+    pub fn is_solid(&self) -> bool {
+        match self {
+            Self::Sphere(_) | Self::Plane(_) | Self::Box(_) | Self::Torus(_) => true,
+            Self::Disk(_) | Self::Rectangle(_) => false,
+            Self::Cylinder(shape) | Self::Cone(shape) => shape.is_capped(),
+        }
+    }
+
+    /// Appends every place where the ray's whole line, also behind its origin, passes through the boundary of this
+    /// solid, in increasing order of t, by turns entering and leaving. Nothing where it is not solid. Before the first
+    /// crossing the line is inside where that one leaves (only below a plane).
+    pub fn crossings(&self, ray: &Ray, out: &mut Vec<Crossing>) {
+        match self {
+            Self::Sphere(shape) => shape.crossings(ray, out),
+            Self::Plane(shape) => shape.crossings(ray, out),
+            Self::Box(shape) => shape.crossings(ray, out),
+            Self::Cylinder(shape) | Self::Cone(shape) if shape.is_capped() => shape.crossings(ray, out),
+            Self::Torus(shape) => shape.crossings(ray, out),
+            Self::Disk(_) | Self::Rectangle(_) | Self::Cylinder(_) | Self::Cone(_) => {}
+        }
+    }
+
+    /// True where the point is inside this solid; on the surface it is not. Never where it is not solid.
+    pub fn contains(&self, point: Point3) -> bool {
+        match self {
+            Self::Sphere(shape) => shape.contains(point),
+            Self::Plane(shape) => shape.contains(point),
+            Self::Box(shape) => shape.contains(point),
+            Self::Cylinder(shape) | Self::Cone(shape) => shape.contains(point),
+            Self::Torus(shape) => shape.contains(point),
+            Self::Disk(_) | Self::Rectangle(_) => false,
+        }
+    }
+
+    /// The smallest axis-aligned box around it, grown by the rounding of its own computation. A plane's is infinite,
+    /// with one finite side where the plane is axis-aligned.
+    pub fn bounds(&self) -> Bounds3 {
+        let bounds = each!(self, shape => shape.bounds());
+        let size = bounds.min.0.abs().max(bounds.max.0.abs());
+        let largest = size.to_array().into_iter().filter(|s| s.is_finite()).fold(0.0, f64::max);
+        bounds.grown(gamma(16) * largest)
+    }
+
+    /// The same solid or surface in another space, where the map lets the shape keep its kind: a rotation, mirroring and
+    /// uniform scale for most, any affine map for a plane, one along the axes for a box. It is for intersection only:
+    /// its (u, v) may differ, so take those from the original, at the point carried back.
+    pub fn transformed(&self, map: &Transform) -> Option<Self> {
+        Some(match self {
+            Self::Sphere(shape) => Self::Sphere(shape.transformed(map)?),
+            Self::Plane(shape) => Self::Plane(shape.transformed(map)?),
+            Self::Disk(shape) => Self::Disk(shape.transformed(map)?),
+            Self::Rectangle(shape) => Self::Rectangle(shape.transformed(map)?),
+            Self::Box(shape) => Self::Box(shape.transformed(map)?),
+            Self::Cylinder(shape) => Self::Cylinder(shape.transformed(map)?),
+            Self::Cone(shape) => Self::Cone(shape.transformed(map)?),
+            Self::Torus(shape) => Self::Torus(shape.transformed(map)?),
+        })
+    }
 }

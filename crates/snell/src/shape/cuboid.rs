@@ -1,0 +1,119 @@
+//! The axis-aligned box, called cuboid because `Box` is Rust's own word.
+//!
+//! The slab method: Kay and Kajiya, "Ray Tracing Complex Scenes", SIGGRAPH 1986; Williams et al., "An Efficient and Robust
+//! Ray-Box Intersection Algorithm", JGT 10(1), 2005, for directions with zero components.
+
+use snell_math::{Bounds3, Normal3, Point3, Ray, Transform, Vector3};
+
+use super::rounding::gamma;
+use super::span::Span;
+use super::{Crossing, ShapeHit, SurfacePoint};
+
+/// All points between two corners. Part `2 axis` is the face of smallest coordinate on that axis, `2 axis + 1` the
+/// opposite one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cuboid {
+    min: Point3,
+    max: Point3,
+}
+
+impl Cuboid {
+    /// From its corners of smallest and largest coordinates.
+    pub const fn new(min: Point3, max: Point3) -> Self {
+        Self { min, max }
+    }
+
+    /// A ray within a face is inside at the smaller coordinate and outside at the larger: of two boxes that share a
+    /// face, exactly one has it.
+    #[inline]
+    fn span(&self, ray: &Ray) -> Option<Span> {
+        let (o, d) = (ray.origin, ray.direction);
+        // A ray with NaN or without a direction compares false everywhere below, so it has to be stopped here.
+        if !(d.length_squared() > 0.0 && o.is_finite()) {
+            return None;
+        }
+        let mut enter = ShapeHit { t: f64::NEG_INFINITY, part: 0 };
+        let mut leave = ShapeHit { t: f64::INFINITY, part: 0 };
+        for (axis, low_part) in [0, 2, 4].into_iter().enumerate() {
+            if d[axis] == 0.0 {
+                if !(self.min[axis] <= o[axis] && o[axis] < self.max[axis]) {
+                    return None;
+                }
+                continue;
+            }
+            // Divided, not multiplied by a reciprocal that could be infinite: the quotient is never NaN.
+            let low = ShapeHit { t: (self.min[axis] - o[axis]) / d[axis], part: low_part };
+            let high = ShapeHit { t: (self.max[axis] - o[axis]) / d[axis], part: low_part + 1 };
+            let (near, far) = if d[axis] > 0.0 { (low, high) } else { (high, low) };
+            enter = if near.t > enter.t { near } else { enter };
+            leave = if far.t < leave.t { far } else { leave };
+        }
+        Span::new(enter, leave)
+    }
+
+    /// See [`super::Shape::intersect`].
+    #[inline]
+    pub fn intersect(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<ShapeHit> {
+        self.span(ray)?.first_between(t_min, t_max)
+    }
+
+    pub(super) fn crossings(&self, ray: &Ray, out: &mut Vec<Crossing>) {
+        if let Some(span) = self.span(ray) {
+            span.push_to(out);
+        }
+    }
+
+    /// The point is put exactly onto its face. The error only has to be large enough that adding it changes the
+    /// coordinate of the face; the difference to the face is then exact in sign.
+    #[inline]
+    pub(super) fn surface_geometry(&self, ray: &Ray, hit: ShapeHit) -> SurfacePoint {
+        let (axis, high) = face(hit.part);
+        let raw = ray.at(hit.t);
+        let mut point = Point3(raw.0.max(self.min.0).min(self.max.0));
+        point.0[axis] = if high { self.max[axis] } else { self.min[axis] };
+        let mut normal = Normal3::new(0.0, 0.0, 0.0);
+        normal.0[axis] = if high { 1.0 } else { -1.0 };
+        let error = gamma(4) * (self.min.max_abs() + self.max.max_abs());
+        SurfacePoint::flat(point, normal, error)
+    }
+
+    /// From the corner at the lower left of the face, seen from outside with y up (top and bottom: seen with −z and +z
+    /// up), so that v is up and u to the right.
+    pub(super) fn uv(&self, p: Point3, part: u32) -> [f64; 2] {
+        let (low, high) = (p - self.min, self.max - p);
+        match part {
+            0 => [low.z(), low.y()],
+            1 => [high.z(), low.y()],
+            2 => [low.x(), low.z()],
+            3 => [low.x(), high.z()],
+            4 => [high.x(), low.y()],
+            _ => [low.x(), low.y()],
+        }
+    }
+
+    pub(super) fn contains(&self, p: Point3) -> bool {
+        self.min.0.cmplt(p.0).all() && p.0.cmplt(self.max.0).all()
+    }
+
+    pub(super) fn bounds(&self) -> Bounds3 {
+        Bounds3::new(self.min, self.max)
+    }
+
+    /// Only under a map that takes axes to axes; its scale may differ between them.
+    pub(super) fn transformed(&self, map: &Transform) -> Option<Self> {
+        let axes = [Vector3::X, Vector3::Y, Vector3::Z].map(|axis| map.vector(axis));
+        let aligned = axes.iter().all(|v| v.to_array().iter().filter(|&&c| c != 0.0).count() == 1);
+        let Bounds3 { min, max } = map.bounds(&self.bounds());
+        aligned.then_some(Self { min, max })
+    }
+}
+
+/// The axis of a face, and whether it is the one of larger coordinate.
+fn face(part: u32) -> (usize, bool) {
+    let axis = match part >> 1 {
+        0 => 0,
+        1 => 1,
+        _ => 2,
+    };
+    (axis, part & 1 == 1)
+}

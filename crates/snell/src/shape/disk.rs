@@ -1,0 +1,59 @@
+//! The flat disk, with or without a hole. Glassner (ed.), An Introduction to Ray Tracing (1989), section 2.3.
+
+use snell_math::{Bounds3, Point3, Ray, Transform, Vector3};
+
+use super::frame::{Frame, turn};
+use super::plane::Plane;
+use super::{ShapeHit, SurfacePoint};
+
+/// The points of a plane between two distances from a centre.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disk {
+    plane: Plane,
+    frame: Frame,
+    radius: f64,
+    inner_radius: f64,
+}
+
+impl Disk {
+    /// From its centre, normal and radii; `inner_radius` 0 for no hole.
+    pub fn new(center: Point3, normal: Vector3, radius: f64, inner_radius: f64) -> Self {
+        Self { plane: Plane::new(center, normal), frame: Frame::around(center, normal), radius, inner_radius }
+    }
+
+    /// See [`super::Shape::intersect`].
+    #[inline]
+    pub fn intersect(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<ShapeHit> {
+        let hit = self.plane.intersect(ray, t_min, t_max)?;
+        let squared = ((ray.origin - self.frame.origin) + ray.direction * hit.t).length_squared();
+        let (inner, outer) = (self.inner_radius * self.inner_radius, self.radius * self.radius);
+        (inner <= squared && squared <= outer).then_some(hit)
+    }
+
+    #[inline]
+    pub(super) fn surface_geometry(&self, ray: &Ray, hit: ShapeHit) -> SurfacePoint {
+        self.plane.surface_geometry(ray, hit)
+    }
+
+    pub(super) fn uv(&self, p: Point3) -> [f64; 2] {
+        let local = self.frame.point(p);
+        let distance = (local.x() * local.x() + local.y() * local.y()).sqrt();
+        let v = (distance - self.inner_radius) / (self.radius - self.inner_radius);
+        [turn(local.x(), local.y()), v.clamp(0.0, 1.0)]
+    }
+
+    pub(super) fn bounds(&self) -> Bounds3 {
+        let reach = self.frame.circle_extent() * self.radius;
+        Bounds3::new(self.frame.origin - reach, self.frame.origin + reach)
+    }
+
+    pub(super) fn transformed(&self, map: &Transform) -> Option<Self> {
+        let scale = map.uniform_scale()?;
+        Some(Self {
+            plane: self.plane.transformed(map)?,
+            frame: self.frame.transformed(map),
+            radius: self.radius * scale,
+            inner_radius: self.inner_radius * scale,
+        })
+    }
+}

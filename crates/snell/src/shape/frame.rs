@@ -1,0 +1,83 @@
+//! The own coordinates of a shape with an axis: its centre, and three perpendicular unit vectors, the last along the axis.
+
+use std::f64::consts::TAU;
+
+use snell_math::{Point3, Ray, Transform, Vector3, portable};
+
+/// Orthonormal axes at an origin. They may be left-handed after a mirroring: the shapes that use them are symmetric.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Frame {
+    pub(super) origin: Point3,
+    pub(super) x: Vector3,
+    pub(super) y: Vector3,
+    pub(super) z: Vector3,
+}
+
+impl Frame {
+    /// With z along `axis`. For an axis +y, x is +x and y is −z, so that angles go around as on the sphere.
+    pub(super) fn around(origin: Point3, axis: Vector3) -> Self {
+        let z = axis.try_normalize().unwrap_or(Vector3::ZERO);
+        let (x, y) = z.orthonormal_basis();
+        Self { origin, x, y, z }
+    }
+
+    /// The same ray in these coordinates; t keeps its meaning.
+    #[inline]
+    pub(super) fn ray(&self, ray: &Ray) -> (Vector3, Vector3) {
+        (self.vector(ray.origin - self.origin), self.vector(ray.direction))
+    }
+
+    /// The coordinates of the point at `t` on a ray.
+    #[inline]
+    pub(super) fn ray_point(&self, ray: &Ray, t: f64) -> Vector3 {
+        self.vector((ray.origin - self.origin) + ray.direction * t)
+    }
+
+    /// The coordinates of a point.
+    #[inline]
+    pub(super) fn point(&self, p: Point3) -> Vector3 {
+        self.vector(p - self.origin)
+    }
+
+    #[inline]
+    fn vector(&self, v: Vector3) -> Vector3 {
+        Vector3::new(v.dot(self.x), v.dot(self.y), v.dot(self.z))
+    }
+
+    /// The vector with these coordinates.
+    #[inline]
+    pub(super) fn vector_out(&self, v: Vector3) -> Vector3 {
+        self.x * v.x() + self.y * v.y() + self.z * v.z()
+    }
+
+    /// The point with these coordinates.
+    #[inline]
+    pub(super) fn point_out(&self, v: Vector3) -> Point3 {
+        self.origin + self.vector_out(v)
+    }
+
+    /// Carried along by a rotation, mirroring and uniform scale, made orthonormal again.
+    pub(super) fn transformed(&self, map: &Transform) -> Self {
+        let z = map.vector(self.z).normalize();
+        let x = map.vector(self.x);
+        let x = (x - z * x.dot(z)).normalize();
+        let image = map.vector(self.y);
+        let y = z.cross(x);
+        Self { origin: map.point(self.origin), x, y: if y.dot(image) < 0.0 { -y } else { y }, z }
+    }
+
+    /// By how much a circle of radius 1 across the axis reaches along x, y and z of space.
+    pub(super) fn circle_extent(&self) -> Vector3 {
+        let reach = |axis: usize| {
+            let (x, y) = (self.x[axis], self.y[axis]);
+            (x * x + y * y).sqrt()
+        };
+        Vector3::new(reach(0), reach(1), reach(2))
+    }
+}
+
+/// The angle of (x, y) as a fraction of a full turn, in [0, 1]; 0 along x.
+pub(super) fn turn(x: f64, y: f64) -> f64 {
+    let fraction = portable::atan2(y, x) / TAU;
+    if fraction < 0.0 { fraction + 1.0 } else { fraction }
+}

@@ -1,0 +1,88 @@
+//! The sphere. Units and space of its ray, as all shapes.
+//!
+//! Intersection follows Haines, Günther, Akenine-Möller, "Precision Improvements for Ray/Sphere Intersection", Ray
+//! Tracing Gems (2019), chapter 7: the discriminant from the line's perpendicular distance to the centre, so that far
+//! and small spheres keep their shape, and the root that would cancel from the product of both, so that rays starting
+//! near huge ones do. The original form: Glassner (ed.), An Introduction to Ray Tracing (1989), section 2.2.
+
+use snell_math::{Bounds3, Normal3, Point3, Ray, Transform, Vector3, portable};
+
+use super::frame::turn;
+use super::rounding::gamma;
+use super::span::Span;
+use super::{Crossing, ShapeHit, SurfacePoint};
+
+/// All points at a distance from a centre.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere {
+    /// The centre.
+    pub center: Point3,
+    /// The radius, positive.
+    pub radius: f64,
+}
+
+impl Sphere {
+    /// From its centre and radius.
+    pub const fn new(center: Point3, radius: f64) -> Self {
+        Self { center, radius }
+    }
+
+    #[inline]
+    fn span(&self, ray: &Ray) -> Option<Span> {
+        let (f, d) = (self.center - ray.origin, ray.direction);
+        let a = d.length_squared();
+        let b = f.dot(d);
+        let squared = self.radius * self.radius;
+        let perpendicular = f - d * (b / a);
+        let discriminant = squared - perpendicular.length_squared();
+        // Negated, so that NaN from a broken ray ends here too; a line that just touches does not hit.
+        if !(discriminant > 0.0 && a > 0.0) {
+            return None;
+        }
+        let q = b + (a * discriminant).sqrt().copysign(b);
+        let (far, near) = (q / a, (f.length_squared() - squared) / q);
+        let (enter, leave) = if q < 0.0 { (far, near) } else { (near, far) };
+        Span::new(ShapeHit { t: enter, part: 0 }, ShapeHit { t: leave, part: 0 })
+    }
+
+    /// See [`super::Shape::intersect`].
+    #[inline]
+    pub fn intersect(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<ShapeHit> {
+        self.span(ray)?.first_between(t_min, t_max)
+    }
+
+    pub(super) fn crossings(&self, ray: &Ray, out: &mut Vec<Crossing>) {
+        if let Some(span) = self.span(ray) {
+            span.push_to(out);
+        }
+    }
+
+    /// The direction of the hit from the centre is all that is taken from the ray, so errors of t only move the point
+    /// along the surface. The error is counted in `rounding.rs`: the frame's roundings do not occur here.
+    #[inline]
+    pub(super) fn surface_geometry(&self, ray: &Ray, hit: ShapeHit) -> SurfacePoint {
+        let local = (ray.origin - self.center) + ray.direction * hit.t;
+        let normal = local.try_normalize().unwrap_or(Vector3::Y);
+        let error = gamma(32) * (self.center.max_abs() + self.radius);
+        SurfacePoint::flat(self.center + normal * self.radius, Normal3::from(normal), error)
+    }
+
+    pub(super) fn uv(&self, p: Point3) -> [f64; 2] {
+        let v = p - self.center;
+        let equator = (v.x() * v.x() + v.z() * v.z()).sqrt();
+        let latitude = portable::atan2(v.y(), equator);
+        [turn(v.x(), -v.z()), 0.5 + latitude * std::f64::consts::FRAC_1_PI]
+    }
+
+    pub(super) fn contains(&self, p: Point3) -> bool {
+        (p - self.center).length_squared() < self.radius * self.radius
+    }
+
+    pub(super) fn bounds(&self) -> Bounds3 {
+        Bounds3::new(self.center, self.center).grown(self.radius)
+    }
+
+    pub(super) fn transformed(&self, map: &Transform) -> Option<Self> {
+        Some(Self::new(map.point(self.center), self.radius * map.uniform_scale()?))
+    }
+}
