@@ -128,14 +128,16 @@ fn carried_errors_suffice_under_any_affine_map() {
             let fixture = fixture(&mut random, kind, Point3::ORIGIN + random_offset(i), 1.0);
             let factors = Vector3::new(random.range(0.1, 3.0), random.range(-3.0, -0.1), random.range(1.0, 30.0));
             let angle = random.range(0.0, 6.0);
-            let outer_from_inner = Transform::translate(random.direction() * [0.0, 10.0, 1e5][random.below(3) as usize])
-                * Transform::rotate(random.direction(), angle)
-                * Transform::scale(factors);
+            let outer_from_inner =
+                Transform::translate(random.direction() * [0.0, 10.0, 1e5][random.below(3) as usize])
+                    * Transform::rotate(random.direction(), angle)
+                    * Transform::scale(factors);
             let ray = ray_at(&mut random, &fixture, 5.0);
             let Some(hit) = fixture.shape.intersect(&ray, 0.0, f64::INFINITY) else { continue };
             let surface = fixture.shape.surface(&ray, hit).carried(&outer_from_inner);
             let origin = surface.point + surface.geometric_normal.as_vector() * (factor * surface.error);
-            let ray = outer_from_inner.inverse_ray(&Ray::new(origin, outward(&mut random, &surface, outer_from_inner.point(fixture.center))));
+            let ray = outer_from_inner
+                .inverse_ray(&Ray::new(origin, outward(&mut random, &surface, outer_from_inner.point(fixture.center))));
             spawned += 1;
             let found = fixture.shape.intersect(&ray, 0.0, f64::INFINITY);
             // Carried directions are rounded: far away on an infinite plane, or a flat shape's, that is a real hit.
