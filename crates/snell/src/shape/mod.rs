@@ -1,6 +1,8 @@
 //! The shapes: one file each, with intersection, crossings, surface and bounds. Plain `f64` geometry that knows nothing of
 //! materials, scenes or hierarchies.
 
+pub mod triangle_mesh;
+
 use snell_math::{Normal3, Point3};
 
 /// Where a ray meets a shape.
