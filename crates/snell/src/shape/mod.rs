@@ -20,6 +20,7 @@ mod sphere;
 #[cfg(test)]
 pub(crate) mod tests;
 mod torus;
+pub mod triangle_mesh;
 
 use snell_math::{Bounds3, Normal3, Point3, Ray, Transform};
 
