@@ -188,7 +188,7 @@ impl Geometry {
                 mesh.surface(&local_ray, local)
             }
             (Primitive::Solid { solid, .. }, LocalHit::Solid(local)) => {
-                self.solids[*solid as usize].surface(&local_ray, local)
+                self.solids[*solid as usize].surface(&local_ray, *local)
             }
             _ => unreachable!("a hit is of its primitive's kind"),
         };
@@ -219,7 +219,7 @@ impl Geometry {
     /// Which material a hit has: its part's own, the object's, the mesh file's, that of the instance, or the one for all others.
     fn material_of(&self, primitive: &Primitive, attributes: &Attributes, inherited: u32, local: &LocalHit) -> u32 {
         let of_part = match (primitive, local) {
-            (Primitive::Solid { solid, .. }, LocalHit::Solid(hit)) => self.solids[*solid as usize].tag(hit),
+            (Primitive::Solid { solid, .. }, LocalHit::Solid(hit)) => self.solids[*solid as usize].tag(hit.leaf),
             _ => NONE,
         };
         let of_file = match (primitive, local) {
