@@ -9,7 +9,7 @@ use super::{Fixture, Random, fixture, ray_at};
 fn complaint(fixture: &Fixture, ray: &Ray, crossings: &[Crossing]) -> Option<String> {
     let length = ray.direction.length();
     let to_center = fixture.center - ray.origin;
-    let tolerance = 1e-14 * (to_center.length() + fixture.size + fixture.center.max_abs()) * 20.0;
+    let tolerance = 2e-13 * (to_center.length() + fixture.size + fixture.center.max_abs());
     let starts_inside = crossings.first().is_some_and(|first| !first.entering);
     if starts_inside && !matches!(fixture.shape, Shape::Plane(_)) {
         return Some("it starts inside".to_owned());
@@ -21,7 +21,7 @@ fn complaint(fixture: &Fixture, ray: &Ray, crossings: &[Crossing]) -> Option<Str
     }
     for crossing in crossings {
         let distance = (fixture.distance)(ray.at(crossing.t));
-        if distance.abs() > tolerance {
+        if distance.abs() > tolerance + 1e-15 * crossing.t.abs() * length {
             return Some(format!("{crossing:?} is {distance} off the surface, above {tolerance}"));
         }
     }
