@@ -66,7 +66,7 @@ fn nearest_complaint(shape: &Shape, ray: &Ray, crossings: &[Crossing]) -> Option
 fn crossings_and_hits_agree_with_the_distance_function() {
     let mut random = Random(1);
     let (mut crossed, mut noticed) = (0, 0);
-    for i in 0..30_000_u64 {
+    for i in 0..12_000_u64 {
         let scale = [1.0, 1e-3, 1e6, 30.0][random.below(4) as usize];
         let center = Point3::ORIGIN + random.vector_in_ball(5.0 * scale);
         let fixture = fixture(&mut random, i % 6, center, scale);
@@ -86,7 +86,7 @@ fn crossings_and_hits_agree_with_the_distance_function() {
             noticed += usize::from(twins.iter().all(|twin| complaint(&fixture, &ray, twin).is_some()));
         }
     }
-    assert!(crossed > 10_000);
+    assert!(crossed > 4000);
     assert_eq!(noticed, crossed);
 }
 
