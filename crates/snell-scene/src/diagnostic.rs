@@ -14,7 +14,7 @@ pub struct Source {
 
 /// The place of a [`Source`] in its [`SourceMap`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct SourceId(u32);
+pub struct SourceId(pub(crate) u32);
 
 /// All texts that were read.
 #[derive(Clone, Debug, Default)]
