@@ -31,7 +31,8 @@ use crate::scene::Mesh;
 pub fn smooth_normals(mesh: &mut Mesh, crease_angle: f64) {
     let welded = weld(&mesh.positions);
     let directions = face_normals(mesh);
-    let groups = group_corners(mesh, &welded, &directions, portable::cos(crease_angle.clamp(0.0, std::f64::consts::PI)));
+    let groups =
+        group_corners(mesh, &welded, &directions, portable::cos(crease_angle.clamp(0.0, std::f64::consts::PI)));
 
     // Each group's normal is summed over its corners, whichever vertices they have.
     let mut sums = vec![Vector3::ZERO; groups.count];
@@ -199,8 +200,7 @@ mod tests {
     /// A unit cube whose corners are shared by its three faces.
     fn cube() -> Mesh {
         let positions = (0..8u8).map(|i| [i & 1, i >> 1 & 1, i >> 2].map(f32::from)).collect();
-        let quads =
-            [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+        let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
         let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
         Mesh { positions, triangles, ..Mesh::default() }
     }

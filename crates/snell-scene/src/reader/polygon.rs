@@ -18,7 +18,9 @@ const WORK_PER_CORNER: u64 = 500;
 
 /// The polygons that are not convex would take too long: too many corners, or too many such polygons.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("polygons that are not convex have too many corners (at most {MAX_CONCAVE_CORNERS} each, fewer where there are many)")]
+#[error(
+    "polygons that are not convex have too many corners (at most {MAX_CONCAVE_CORNERS} each, fewer where there are many)"
+)]
 pub struct TooComplex;
 
 /// Turns one polygon into triangles: triples of places in `corners`, turning the way the polygon does.
@@ -117,7 +119,8 @@ impl Triangulator {
         if normal[axis] == 0.0 {
             return false;
         }
-        let (u, v) = if normal[axis] > 0.0 { ((axis + 1) % 3, (axis + 2) % 3) } else { ((axis + 2) % 3, (axis + 1) % 3) };
+        let (u, v) =
+            if normal[axis] > 0.0 { ((axis + 1) % 3, (axis + 2) % 3) } else { ((axis + 2) % 3, (axis + 1) % 3) };
         self.flat.clear();
         self.flat.extend(self.points.iter().map(|&p| scaled(p)).map(|p| [p[u], p[v]]));
         true

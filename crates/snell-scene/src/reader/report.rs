@@ -53,6 +53,11 @@ impl<'a> Report<'a> {
         self.failed
     }
 
+    /// Notes that a file that this one names has an error: this one gives nothing either.
+    pub fn fail(&mut self) {
+        self.failed = true;
+    }
+
     /// A report on another file into the same list, as for a material library.
     pub fn on<'b>(&'b mut self, name: &'b str, bytes: &'b [u8]) -> Report<'b> {
         Report::new(name, bytes, self.diagnostics)

@@ -274,9 +274,7 @@ impl<'a> Parser<'_, 'a> {
 
     /// Tells of something that has no size.
     fn nothing(&mut self, keyword: Word<'_>, what: &str) {
-        self.report.at(keyword.range(), "things without size", || {
-            Diagnostic::warning(format!("{what} is left out"))
-        });
+        self.report.at(keyword.range(), "things without size", || Diagnostic::warning(format!("{what} is left out")));
     }
 
     fn finish(self) -> Option<Scene> {

@@ -131,6 +131,7 @@ impl<'p, 'a, 'm> Builder<'p, 'a, 'm> {
 
 /// The normal of a triangle's plane, of any length; zero where it has no area.
 fn flat_normal(parser: &Parser<'_>, triangle: &[Corner; 3]) -> [f32; 3] {
-    let [a, b, c] = triangle.map(|corner| snell_math::Point3::from(parser.positions[corner[0] as usize].map(f64::from)));
+    let [a, b, c] =
+        triangle.map(|corner| snell_math::Point3::from(parser.positions[corner[0] as usize].map(f64::from)));
     (b - a).cross(c - a).try_normalize().map_or([0.0; 3], |n| n.to_array().map(|x| x as f32))
 }

@@ -109,7 +109,9 @@ impl Found<'_, '_> {
                     for statements in mtl::read(&mut library) {
                         self.material(&mut library, assets, &statements);
                     }
-                    library.finish();
+                    if !library.finish() {
+                        report.fail();
+                    }
                 }
                 Err(error) => report.at(word.range(), "material libraries", || missing(&path, &error, assets)),
             }

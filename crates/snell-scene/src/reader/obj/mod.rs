@@ -109,10 +109,11 @@ impl<'a> Parser<'a> {
             }
             b"mtllib" => self.libraries.push(words.rest()),
             b"p" | b"l" => self.loose += 1,
-            b"g" | b"o" | b"s" | b"mg" | b"lod" | b"bevel" | b"c_interp" | b"d_interp" | b"shadow_obj" | b"trace_obj"
-            | b"usemap" | b"maplib" | b"vw" => {}
-            b"vp" | b"deg" | b"bmat" | b"step" | b"cstype" | b"curv" | b"curv2" | b"surf" | b"parm" | b"trim" | b"hole"
-            | b"scrv" | b"sp" | b"end" | b"con" | b"ctech" | b"stech" | b"bzp" | b"bsp" | b"cdc" | b"cdp" | b"res" => {
+            b"g" | b"o" | b"s" | b"mg" | b"lod" | b"bevel" | b"c_interp" | b"d_interp" | b"shadow_obj"
+            | b"trace_obj" | b"usemap" | b"maplib" | b"vw" => {}
+            b"vp" | b"deg" | b"bmat" | b"step" | b"cstype" | b"curv" | b"curv2" | b"surf" | b"parm" | b"trim"
+            | b"hole" | b"scrv" | b"sp" | b"end" | b"con" | b"ctech" | b"stech" | b"bzp" | b"bsp" | b"cdc" | b"cdp"
+            | b"res" => {
                 report.at(keyword.range(), "lines of curves and surfaces", || {
                     Diagnostic::warning("curves and surfaces are not read: this line is left out")
                 });
@@ -244,13 +245,17 @@ fn resolve(
     if number != 0 && (0..count as i64).contains(&place) && place < i64::from(NONE) {
         return Some(place as u32);
     }
-    report.at(range, "faces that name what is not there", || {
-        let error =
-            Diagnostic::error(format!("there is no {} {number}: there are {count} up to this line", NAMES[kind]));
-        error.help("they count from 1; −1 is the last one before the face")
-    });
+    let message = format!("there is no {} {number}: there are {count} up to this line", NAMES[kind]);
+    if kind > 0 {
+        // Exporters often name normals that they leave out; the face is good without.
+        report.at(range, "names of what is not there", || Diagnostic::warning(message).help(FROM_ONE));
+        return Some(NONE);
+    }
+    report.at(range, "faces that name what is not there", || Diagnostic::error(message).help(FROM_ONE));
     None
 }
+
+const FROM_ONE: &str = "they count from 1; −1 is the last one before the face";
 
 /// Reads numbers of a line into `values`, at least `least` of them; all must be finite in f32. Says what is wrong.
 #[inline]

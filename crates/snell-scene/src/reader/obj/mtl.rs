@@ -49,16 +49,45 @@ pub(super) struct Map {
 
 /// Statements known to others that change nothing here.
 const IGNORED: [&[u8]; 18] = [
-    b"sharpness", b"Pr", b"Pm", b"Ps", b"Pc", b"Pcr", b"Kp", b"Km", b"aniso", b"anisor", b"map_aat", b"map_Pr",
-    b"map_Pm", b"map_Ps", b"map_Ns", b"map_NS", b"Pns", b"Nt",
+    b"sharpness",
+    b"Pr",
+    b"Pm",
+    b"Ps",
+    b"Pc",
+    b"Pcr",
+    b"Kp",
+    b"Km",
+    b"aniso",
+    b"anisor",
+    b"map_aat",
+    b"map_Pr",
+    b"map_Pm",
+    b"map_Ps",
+    b"map_Ns",
+    b"map_NS",
+    b"Pns",
+    b"Nt",
 ];
 /// Maps that would change the picture, told and left out.
 const UNUSED_MAPS: [&[u8]; 14] = [
-    b"map_d", b"map_bump", b"map_Bump", b"bump", b"Bump", b"norm", b"disp", b"decal", b"refl", b"map_refl", b"map_Tr",
-    b"map_Disp", b"map_Kn", b"map_norm",
+    b"map_d",
+    b"map_bump",
+    b"map_Bump",
+    b"bump",
+    b"Bump",
+    b"norm",
+    b"disp",
+    b"decal",
+    b"refl",
+    b"map_refl",
+    b"map_Tr",
+    b"map_Disp",
+    b"map_Kn",
+    b"map_norm",
 ];
 const KNOWN: [&str; 16] = [
-    "newmtl", "Ka", "Kd", "Ks", "Ke", "Kt", "Tf", "Ns", "Ni", "d", "Tr", "illum", "map_Ka", "map_Kd", "map_Ks", "map_Ke",
+    "newmtl", "Ka", "Kd", "Ks", "Ke", "Kt", "Tf", "Ns", "Ni", "d", "Tr", "illum", "map_Ka", "map_Kd", "map_Ks",
+    "map_Ke",
 ];
 
 /// Reads a library.

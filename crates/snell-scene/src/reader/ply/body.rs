@@ -39,13 +39,16 @@ fn check_vertex_properties(header: &Header, report: &mut Report<'_>) -> Option<(
         return None;
     };
     if element.count > u64::from(u32::MAX) {
-        report.at(element.range.clone(), "headers", || Diagnostic::error("more vertices than 32-bit numbers can count"));
+        report
+            .at(element.range.clone(), "headers", || Diagnostic::error("more vertices than 32-bit numbers can count"));
     }
     for name in ["x", "y", "z"] {
         let scalars = element.properties.iter().filter(|p| p.name == name && matches!(p.kind, Kind::Scalar(_))).count();
         if scalars != 1 {
             report.at(element.range.clone(), "headers", || {
-                Diagnostic::error(format!("the vertices need exactly one property `{name}`, a number; they have {scalars}"))
+                Diagnostic::error(format!(
+                    "the vertices need exactly one property `{name}`, a number; they have {scalars}"
+                ))
             });
         }
     }
@@ -122,7 +125,7 @@ fn finite<S: Source>(value: f64, what: &str, row: u64, source: &S, report: &mut 
     let stored = value as f32;
     if !stored.is_finite() {
         report.at(source.place(), "numbers that are not finite", || {
-            Diagnostic::error(format!("the {what} of vertex {row} is {value}, which is not finite or too large"))
+            Diagnostic::error(format!("the {what} of vertex {row} is {value:?}, which is not finite or too large"))
         });
     }
     stored

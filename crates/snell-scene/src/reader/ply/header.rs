@@ -112,7 +112,8 @@ pub(super) fn read(report: &mut Report<'_>) -> Option<Header> {
     }
     let Some(data) = data else {
         let at = lines_end.saturating_sub(1);
-        report.at(at..lines_end, "headers", || Diagnostic::error("the header has no end: there is no line `end_header`"));
+        report
+            .at(at..lines_end, "headers", || Diagnostic::error("the header has no end: there is no line `end_header`"));
         return None;
     };
     if parser.format.is_none() && !report.failed() {
@@ -144,7 +145,8 @@ fn end_of_header(bytes: &[u8], start: usize) -> (usize, Option<usize>) {
     while let Some(line) = lines.next_line() {
         let mut words = Words::new(bytes, line.clone());
         if words.next().is_some_and(|w| w.text == b"end_header") {
-            let data = if bytes[line.end..].starts_with(line_end) { line.end + line_end.len() } else { lines.position() };
+            let data =
+                if bytes[line.end..].starts_with(line_end) { line.end + line_end.len() } else { lines.position() };
             return (line.end, Some(data));
         }
     }
@@ -165,11 +167,11 @@ impl Parser {
             b"element" => self.element(report, keyword, &mut words),
             b"property" => self.property(report, keyword, &mut words),
             other => report.at(keyword.range(), "unknown header lines", || {
-                let near = std::str::from_utf8(other).ok().and_then(|word| did_you_mean(word, KEYWORDS));
-                let error = Diagnostic::error(format!("unknown word {} in the header", quoted(other)));
-                match near {
-                    Some(near) => error.help(format!("did you mean `{near}`?")),
-                    None => error.help(format!("a header line begins with one of {}", KEYWORDS.join(", "))),
+                let message = format!("unknown word {} in the header", quoted(other));
+                match std::str::from_utf8(other).ok().and_then(|word| did_you_mean(word, KEYWORDS)) {
+                    // A property that is passed over would shift everything after it.
+                    Some(near) => Diagnostic::error(message).help(format!("did you mean `{near}`?")),
+                    None => Diagnostic::warning(format!("{message}: this line is left out")),
                 }
             }),
         }
@@ -199,8 +201,9 @@ impl Parser {
     fn element(&mut self, report: &mut Report<'_>, keyword: Word<'_>, words: &mut Words<'_>) {
         let (Some(name), Some(count)) = (words.next(), words.next()) else {
             let help = "as in `element vertex 8`";
-            return report
-                .at(keyword.range(), "headers", || Diagnostic::error("an element needs a name and a count").help(help));
+            return report.at(keyword.range(), "headers", || {
+                Diagnostic::error("an element needs a name and a count").help(help)
+            });
         };
         let Some(count_value) = parse_integer(count.text).and_then(|c| u64::try_from(c).ok()) else {
             return report.at(count.range(), "headers", || {
@@ -222,8 +225,7 @@ impl Parser {
 
     fn property(&mut self, report: &mut Report<'_>, keyword: Word<'_>, words: &mut Words<'_>) {
         let Some(element) = self.elements.last_mut() else {
-            return report
-                .at(keyword.range(), "headers", || Diagnostic::error("a property before the first element"));
+            return report.at(keyword.range(), "headers", || Diagnostic::error("a property before the first element"));
         };
         let scalar = |report: &mut Report<'_>, words: &mut Words<'_>| -> Option<Scalar> {
             let word = words.next();

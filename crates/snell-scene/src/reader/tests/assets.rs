@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::assets::{AssetError, Assets};
-use crate::reader::{MeshFile, MeshFormat, mesh_scene, read_mesh};
-use crate::scene::{Mesh, ObjectKind, Shape};
+use crate::reader::{MeshFile, mesh_scene, nff, read_mesh};
+use crate::scene::Mesh;
 use crate::{Diagnostics, Severity};
 
 /// Files of the disk, for tests alone.
@@ -72,14 +72,6 @@ fn every_mesh_at_hand_loads_or_is_refused_in_words() {
         // Files of other kinds go through as well: they must be refused in words.
         let mut diagnostics = Diagnostics::default();
         let file = read_mesh(name, &bytes, &Disk, &mut diagnostics);
-        let verbose = std::env::var_os("SNELL_SHOW").is_some() && MeshFormat::from_name(name).is_some();
-        if verbose {
-            println!("== {name} {:?}", file.as_ref().map(|f| (f.mesh.triangles.len(), f.materials.len())));
-            for d in &diagnostics.list {
-                let place = d.place.as_ref().map(|(span, _)| diagnostics.sources.location(span).rsplit('/').next().unwrap().to_owned());
-                println!("   {:?} {place:?} {} ({:?})", d.severity, d.message, d.help);
-            }
-        }
         match file {
             Some(file) => {
                 loaded += 1;
@@ -96,4 +88,82 @@ fn every_mesh_at_hand_loads_or_is_refused_in_words() {
         }
     }
     println!("{loaded} loaded, {refused} refused");
+}
+
+#[test]
+fn files_have_the_triangles_that_other_programs_count() {
+    let Some(shared) = shared() else { return };
+    for (path, triangles, positions) in [
+        ("meshes/spot.obj", 5856, 3225),
+        ("meshes/bitterli-cornell-box/glass_sphere.obj", 15872, 0),
+        ("meshes/cornell_box_embree.obj", 34, 0),
+        ("obj-tests/assimp/box.obj", 12, 8),
+        ("obj-tests/assimp/spider.obj", 1368, 0),
+        ("obj-tests/assimp/WusonOBJ.obj", 3732, 0),
+        ("obj-tests/tinyobjloader/catmark_torus_creases0.obj", 64, 128),
+        ("obj-tests/tobj/quad.obj", 5, 0),
+        ("ply-tests/assimp/cube.ply", 12, 8),
+        ("ply-tests/assimp/cube_binary.ply", 12, 8),
+        ("ply-tests/assimp/cube_binary_header_with_RN_newline.ply", 12, 8),
+        ("ply-tests/assimp/cube_binary_starts_with_nl.ply", 12, 8),
+        ("ply-tests/assimp/cube_uv.ply", 12, 24),
+        ("ply-tests/assimp/Wuson.ply", 3732, 11184),
+        ("ply-tests/happly/platonic_shelf.ply", 80, 50),
+        ("ply-tests/happly/platonic_shelf_ascii.ply", 80, 50),
+        ("ply-tests/happly/platonic_shelf_big_endian.ply", 80, 50),
+        ("stl-tests/assimp/Spider_ascii.stl", 1368, 0),
+        ("stl-tests/assimp/Spider_binary.stl", 1368, 0),
+        ("stl-tests/assimp/Wuson.stl", 3732, 0),
+        ("stl-tests/assimp/formatDetection", 1, 3),
+        ("stl-tests/assimp/triangle_with_two_solids.stl", 2, 0),
+    ] {
+        let path = shared.join(path);
+        let mut diagnostics = Diagnostics::default();
+        let file = read_mesh(path.to_str().unwrap(), &std::fs::read(&path).unwrap(), &Disk, &mut diagnostics);
+        let mesh = file.unwrap_or_else(|| panic!("{path:?}: {:?}", diagnostics.list)).mesh;
+        assert_eq!(mesh.triangles.len(), triangles, "{path:?}");
+        assert!(positions == 0 || mesh.positions.len() == positions, "{path:?}: {}", mesh.positions.len());
+    }
+}
+
+/// Every edge belongs to two triangles, once in each direction.
+fn is_closed(mesh: &Mesh) -> bool {
+    let mut edges: Vec<[u32; 2]> =
+        mesh.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).filter(|[a, b]| a != b).collect();
+    edges.sort_unstable();
+    edges.windows(2).all(|w| w[0] != w[1]) && edges.iter().all(|&[a, b]| edges.binary_search(&[b, a]).is_ok())
+}
+
+#[test]
+fn closed_bodies_stay_closed() {
+    let Some(shared) = shared() else { return };
+    for (path, closed) in [
+        ("ply-tests/assimp/cube_binary.ply", true),
+        ("meshes/spot.obj", false), // split along the seams of its texture
+        ("stl-tests/assimp/sphereWithHole.stl", false),
+    ] {
+        let path = shared.join(path);
+        let file =
+            read_mesh(path.to_str().unwrap(), &std::fs::read(&path).unwrap(), &Disk, &mut Diagnostics::default());
+        assert_eq!(is_closed(&file.unwrap().mesh), closed, "{path:?}");
+    }
+}
+
+#[test]
+fn every_procedural_database_loads() {
+    let Some(shared) = shared() else { return };
+    let mut files = Vec::new();
+    walk(&shared.join("spd-nff"), &mut files);
+    files.retain(|path| path.extension().is_some_and(|e| e == "nff"));
+    assert_eq!(files.len(), 15);
+    for path in files {
+        let (scene, diagnostics) = nff::read(path.to_str().unwrap(), &std::fs::read(&path).unwrap());
+        // The smallest teapot has four patches without area.
+        let expected = if path.ends_with("teapot-s1.nff") { 4 } else { 0 };
+        assert_eq!(diagnostics.list.len(), expected, "{path:?}: {:?}", diagnostics.list);
+        let scene = scene.unwrap();
+        for mesh in scene.meshes.iter() {
+            check_mesh(&MeshFile { mesh: mesh.clone(), ..MeshFile::default() });
+        }
+    }
 }
