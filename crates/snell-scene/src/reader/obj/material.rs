@@ -23,6 +23,8 @@ use crate::scene::ImageAsset;
 
 /// How many libraries one file may name.
 const MAX_LIBRARIES: usize = 256;
+/// How many names are tried as what a misspelt one may mean.
+const MAX_SUGGESTIONS: usize = 1000;
 /// The diffuse reflectance of what has no material.
 const PLAIN: Rgb = Rgb::gray(0.8);
 
@@ -83,7 +85,7 @@ fn plain(name: Option<String>) -> MaterialFile {
 struct Found<'p, 'a> {
     wanted: &'p HashMap<&'a [u8], u32>,
     materials: Vec<Option<MaterialFile>>,
-    /// Names of all materials, for suggestions.
+    /// Names of the first materials, for suggestions.
     defined: Vec<String>,
     images: Images,
 }
@@ -106,9 +108,7 @@ impl Found<'_, '_> {
             match assets.read(&path) {
                 Ok(content) => {
                     let mut library = report.on(&path, &content);
-                    for statements in mtl::read(&mut library) {
-                        self.material(&mut library, assets, &statements);
-                    }
+                    mtl::read(&mut library, |library, statements| self.material(library, assets, statements));
                     if !library.finish() {
                         report.fail();
                     }
@@ -120,7 +120,9 @@ impl Found<'_, '_> {
 
     /// Keeps a material if a face uses it; the first of a name counts.
     fn material(&mut self, library: &mut Report<'_>, assets: &dyn Assets, statements: &Statements) {
-        self.defined.push(String::from_utf8_lossy(&statements.name).into_owned());
+        if self.defined.len() < MAX_SUGGESTIONS {
+            self.defined.push(String::from_utf8_lossy(&statements.name).into_owned());
+        }
         let Some(&number) = self.wanted.get(statements.name.as_slice()) else { return };
         if self.materials[number as usize].is_some() {
             let name = quoted(&statements.name);

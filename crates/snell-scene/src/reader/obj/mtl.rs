@@ -90,18 +90,18 @@ const KNOWN: [&str; 16] = [
     "map_Ke",
 ];
 
-/// Reads a library.
-pub(super) fn read(report: &mut Report<'_>) -> Vec<Statements> {
+/// Reads a library and hands over each material once its last statement is read.
+pub(super) fn read<'a>(report: &mut Report<'a>, mut take: impl FnMut(&mut Report<'a>, &Statements)) {
     let bytes = report.bytes;
     let start = match text_start(bytes) {
         Ok(start) => start,
         Err(encoding) => {
             let help = "save it as UTF-8 or plain ASCII";
             report.whole("encodings", || Diagnostic::error(format!("this file is text in {encoding}")).help(help));
-            return Vec::new();
+            return;
         }
     };
-    let mut materials: Vec<Statements> = Vec::new();
+    let mut material: Option<Statements> = None;
     let mut lines = Lines::new(bytes, start, true);
     while let Some(line) = lines.next_line() {
         let mut words = Words::new(bytes, line);
@@ -111,8 +111,11 @@ pub(super) fn read(report: &mut Report<'_>) -> Vec<Statements> {
         }
         if keyword.text == b"newmtl" {
             let name = words.rest().text.to_vec();
-            materials.push(Statements { name, range: keyword.range(), ..Statements::default() });
-        } else if let Some(material) = materials.last_mut() {
+            let next = Statements { name, range: keyword.range(), ..Statements::default() };
+            if let Some(complete) = material.replace(next) {
+                take(report, &complete);
+            }
+        } else if let Some(material) = &mut material {
             statement(report, material, keyword, words);
         } else {
             report.at(keyword.range(), "statements before the first material", || {
@@ -120,7 +123,9 @@ pub(super) fn read(report: &mut Report<'_>) -> Vec<Statements> {
             });
         }
     }
-    materials
+    if let Some(complete) = material {
+        take(report, &complete);
+    }
 }
 
 fn statement(report: &mut Report<'_>, material: &mut Statements, keyword: Word<'_>, words: Words<'_>) {
