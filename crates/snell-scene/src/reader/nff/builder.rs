@@ -45,8 +45,8 @@ pub(super) struct Builder {
     pub too_complex: bool,
     scene: Scene,
     fill: Fill,
-    /// The materials of the fill for things with one side and with two, once needed.
-    materials: [Option<Id<Material>>; 2],
+    /// The materials of all fills so far, by the fill's numbers and by whether things have one side.
+    materials: HashMap<([u64; 8], bool), Id<Material>>,
     polygons: Collected,
     patches: Collected,
     triangulator: Triangulator,
@@ -69,7 +69,6 @@ impl Builder {
         }
         self.flush();
         self.fill = fill;
-        self.materials = [None; 2];
     }
 
     /// A sphere; a negative radius shows its inside.
@@ -157,7 +156,10 @@ impl Builder {
     fn material(&mut self, outside: bool) -> Id<Material> {
         let Fill { color, diffuse, specular, shininess, transmittance, index } = self.fill;
         let one_sided = outside && transmittance == 0.0;
-        if let Some(material) = self.materials[usize::from(one_sided)] {
+        let [r, g, b] = color.to_array();
+        let key = [r, g, b, diffuse, specular, shininess, transmittance].map(f64::from);
+        let key = ([key[0], key[1], key[2], key[3], key[4], key[5], key[6], index].map(f64::to_bits), one_sided);
+        if let Some(&material) = self.materials.get(&key) {
             return material;
         }
         let mut texture = |color: Rgb| self.scene.textures.push(Texture::constant(color));
@@ -180,7 +182,7 @@ impl Builder {
             ..Material::default()
         };
         let material = self.scene.materials.push(material);
-        self.materials[usize::from(one_sided)] = Some(material);
+        self.materials.insert(key, material);
         material
     }
 }
