@@ -63,6 +63,14 @@ impl Resolver<'_> {
             mesh.triangles.extend(triangles.map(|triangle| triangle.map(|corner| face.value[corner])));
         }
         mesh.normals = self.per_vertex(&given.normals, count, name, "normals").iter().map(|n| single(*n)).collect();
+        let normals = given.normals.as_ref();
+        if let Some(number) =
+            normals.and_then(|n| n.value.iter().position(|n| Vector3::from(*n).try_normalize().is_none()))
+        {
+            let span = normals.and_then(|normals| normals.span.clone());
+            let message = format!("normal {number} of the mesh {name:?} has no length, and so no direction");
+            self.error(&span, message, "one of these");
+        }
         mesh.colors = self.per_vertex(&given.colors, count, name, "colors").iter().map(|c| single(*c)).collect();
         let uvs = self.per_vertex(&given.uvs, count, name, "uvs").iter();
         mesh.uvs = uvs.map(|uv| uv.map(|x| x as f32)).collect();
@@ -158,20 +166,17 @@ fn smoothed(mesh: Mesh, angle: Option<f64>) -> Mesh {
     let mut builder = Doubled::new(&mesh);
     for group in corners.chunk_by(|a, b| a.0 == b.0) {
         let weights: Vec<f64> = group.iter().map(|(_, t, k)| weight(*t, *k)).collect();
+        // Around a vertex of very many triangles, comparing all pairs would take too long: the mean of all serves there.
+        let all = group.len() > MAX_PAIRS;
+        let mean = |face: usize| {
+            let near = |other: usize| all || other == face || faces[other].dot(faces[face]) >= limit;
+            let parts = group.iter().zip(&weights).filter(|((_, other, _), _)| near(*other));
+            let sum = parts.fold(Vector3::ZERO, |sum, ((_, other, _), weight)| sum + faces[*other] * *weight);
+            single(sum.try_normalize().unwrap_or(faces[face]).to_array())
+        };
+        let of_all = mean(group[0].1);
         for (_, t, k) in group {
-            let same = |other: usize| other == *t || faces[other].dot(faces[*t]) >= limit;
-            // A fan around one vertex of very many triangles is averaged whole: looking at all pairs would take too long.
-            let all = group.len() > MAX_PAIRS;
-            let sum = group.iter().zip(&weights).fold(Vector3::ZERO, |sum, ((_, other, _), weight)| {
-                if all || same(*other) { sum + faces[*other] * *weight } else { sum }
-            });
-            let normal = sum.try_normalize().unwrap_or(faces[*t]);
-            builder.corner(*t, *k, single(normal.to_array()));
-            if all {
-                // All corners have this normal.
-                group.iter().for_each(|(_, t, k)| builder.corner(*t, *k, single(normal.to_array())));
-                break;
-            }
+            builder.corner(*t, *k, if all { of_all } else { mean(*t) });
         }
     }
     builder.mesh
@@ -190,8 +195,8 @@ struct Doubled<'a> {
 
 impl<'a> Doubled<'a> {
     fn new(old: &'a Mesh) -> Self {
-        let empty = Vec::new;
-        let mesh = Mesh { positions: empty(), normals: Vec::new(), uvs: Vec::new(), colors: Vec::new(), ..old.clone() };
+        let mesh =
+            Mesh { positions: Vec::new(), normals: Vec::new(), uvs: Vec::new(), colors: Vec::new(), ..old.clone() };
         Self { old, mesh, made: vec![Vec::new(); old.positions.len()] }
     }
 
