@@ -117,7 +117,7 @@ pub enum Shape {
         /// The hole's radius, 0 for none.
         inner_radius: f64,
     },
-    /// A flat rectangle `corner + u edges[0] + v edges[1]`, (u, v) in [0, 1]²; its normal is edges[0] × edges[1].
+    /// A flat rectangle `corner + u edges[0] + v edges[1]`, (u, v) in [0, 1]²; its normal is `edges[0] × edges[1]`.
     Rectangle {
         /// The corner at (0, 0).
         corner: Point3,

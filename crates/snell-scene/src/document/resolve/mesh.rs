@@ -3,8 +3,6 @@
 use snell_math::{Bounds3, Point3, Transform, Vector3, portable};
 
 use super::{Resolver, polygon};
-use crate::assets::Assets;
-use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::document::model::{self, Located, Triple};
 use crate::scene::Mesh;
 use crate::table::Id;
@@ -20,8 +18,8 @@ impl Resolver<'_> {
                 match self.meshes.get(&key) {
                     Some(id) => *id,
                     None => {
-                        let mesh = self.mesh_from_file(file).map(|mesh| smoothed(mesh, given.smooth));
-                        let id = self.scene.meshes.push(mesh.unwrap_or_default());
+                        let id = self.mesh_from_file(file, given.smooth);
+                        let id = id.unwrap_or_else(|| self.scene.meshes.push(Mesh::default()));
                         self.meshes.insert(key, id);
                         id
                     }
@@ -36,9 +34,12 @@ impl Resolver<'_> {
         (id, fit)
     }
 
-    fn mesh_from_file(&mut self, file: &Located<String>) -> Option<Mesh> {
-        let (path, bytes) = self.file(file)?;
-        read_mesh_file(&path, &bytes, self.assets, file, self.diagnostics)
+    /// Reads a mesh file into the scene, with the materials that it brings. The one place where the scene format meets the
+    /// readers of meshes.
+    fn mesh_from_file(&mut self, file: &Located<String>, _smooth: Option<f64>) -> Option<Id<Mesh>> {
+        let (path, _bytes) = self.file(file)?;
+        self.error(&file.span, format!("the mesh file {path:?} is of no known format"), "named here");
+        None
     }
 
     fn mesh_in_place(&mut self, given: &model::Mesh, name: &str) -> Mesh {
@@ -112,19 +113,6 @@ impl Resolver<'_> {
         let stand = Vector3::new(-middle.x(), -bounds.min.y(), -middle.z());
         Transform::scale(Vector3::new(factor, factor, factor)) * Transform::translate(stand)
     }
-}
-
-/// Reads a mesh file. The one place where the scene format meets the readers of meshes.
-fn read_mesh_file(
-    path: &str,
-    _bytes: &[u8],
-    _assets: &dyn Assets,
-    named: &Located<String>,
-    diagnostics: &mut Diagnostics,
-) -> Option<Mesh> {
-    let message = format!("the mesh file {path:?} is of no known format");
-    diagnostics.push(Diagnostic::error(message).at_optional(named.span.clone(), "named here"));
-    None
 }
 
 fn single(triple: Triple) -> [f32; 3] {
