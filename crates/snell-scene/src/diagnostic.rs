@@ -155,7 +155,7 @@ impl Diagnostics {
 /// The candidate nearest to a misspelt word, where one is near enough to be worth suggesting.
 ///
 /// Nearness is the Damerau–Levenshtein distance without regard to case, at most a third of the longer word's length. Words
-/// of more than 256 bytes are near to nothing: the distance takes time and memory in proportion to both lengths.
+/// of more than 64 characters are near to none: comparing takes time and memory with the product of the lengths.
 ///
 /// ```
 /// use snell_scene::diagnostic::did_you_mean;
@@ -163,14 +163,14 @@ impl Diagnostics {
 /// assert_eq!(did_you_mean("zebra", ["sphere", "plane"]), None);
 /// ```
 pub fn did_you_mean<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    const LONGEST: usize = 256;
-    if word.len() > LONGEST {
+    const LONGEST: usize = 64;
+    if word.chars().nth(LONGEST).is_some() {
         return None;
     }
     let lower = word.to_lowercase();
     candidates
         .into_iter()
-        .filter(|candidate| candidate.len() <= LONGEST)
+        .filter(|candidate| candidate.chars().nth(LONGEST).is_none())
         .map(|candidate| {
             let distance = strsim::damerau_levenshtein(&lower, &candidate.to_lowercase());
             (distance, candidate)

@@ -1,6 +1,8 @@
 //! Lenses against closed forms: which points are inside, by the surfaces of the optician.
 
-use snell_math::{Point3, Vector3};
+#![expect(clippy::unwrap_used, reason = "helpers of tests, where a panic is a failure")]
+
+use snell_math::{Point3, Vector3, portable};
 use snell_scene::assets::MemoryAssets;
 use snell_scene::document::read_scene;
 use snell_scene::scene::{CsgOperation, ObjectKind, Shape};
@@ -60,7 +62,7 @@ fn differences(kind: &ObjectKind, r1: Option<f64>, r2: Option<f64>, thickness: f
             }
             let expected = d < rim && front < z && z < back;
             let angle = f64::from(i * 7 + j);
-            let p = Point3::new(d * angle.cos(), d * angle.sin(), z);
+            let p = Point3::new(d * portable::cos(angle), d * portable::sin(angle), z);
             count += usize::from(inside(kind, p) != expected);
         }
     }

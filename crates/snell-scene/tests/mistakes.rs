@@ -1,6 +1,8 @@
 //! Every mistake that the scene format knows, as the author sees it: `mistakes.txt` holds scenes and the messages they give,
 //! with place, underlined text and suggestion. `SNELL_BLESS=1` writes the messages anew.
 
+#![expect(clippy::unwrap_used, reason = "helpers of tests, where a panic is a failure")]
+
 use std::fmt::Write;
 
 use snell_scene::assets::MemoryAssets;

@@ -1,6 +1,8 @@
 //! No input makes the reader panic or give a scene with numbers that are not finite: arbitrary bytes, broken copies of a
 //! scene that has everything, and arbitrary `--set`.
 
+#![expect(clippy::unwrap_used, reason = "helpers of tests, where a panic is a failure")]
+
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use snell_scene::assets::MemoryAssets;

@@ -1,9 +1,9 @@
 //! Our own scene format, TOML or JSON: one model ([`model`]) drives the reader, the published schema, the reference
 //! `docs/scene-format.md` and the completions of `--set`.
 //!
-//! Reading goes: text → [`tree`] of values with places ([`parse`], [`json`]) → `--set` ([`overrides`]) → mistakes of form, all
-//! of them, against the schema ([`check`]) → the model through serde ([`deserialize`]) → mistakes of meaning, all of them, and
-//! the [`Scene`] ([`resolve`]). What has mistakes of form is left out, so that the rest is still examined for meaning.
+//! Reading goes: text → `tree` of values with places (`parse`, `json`) → `--set` (`overrides`) → mistakes of form, all
+//! of them, against the schema (`check`) → the model through serde (`deserialize`) → mistakes of meaning, all of them, and
+//! the [`Scene`] (`resolve`). What has mistakes of form is left out, so that the rest is still examined for meaning.
 
 mod check;
 mod color;
@@ -53,7 +53,21 @@ pub fn read_scene(name: &str, bytes: &[u8], assets: &dyn Assets, overrides: &[St
     // In the order of the texts, whichever check has found them.
     let place = |diagnostic: &Diagnostic| diagnostic.place.as_ref().map(|(span, _)| (span.source, span.range.start));
     diagnostics.list.sort_by_key(|diagnostic| (diagnostic.place.is_none(), place(diagnostic)));
-    (scene.filter(|_| !diagnostics.has_errors()), diagnostics)
+    let scene = scene.filter(|_| !diagnostics.has_errors());
+    shorten(&mut diagnostics);
+    (scene, diagnostics)
+}
+
+/// How much is told of one scene.
+const MAX_TOLD: usize = 200;
+
+/// Leaves out what nobody would read, but not how much that is and how bad.
+fn shorten(diagnostics: &mut Diagnostics) {
+    let left_out = diagnostics.list.split_off(MAX_TOLD.min(diagnostics.list.len()));
+    if let Some(severity) = left_out.iter().map(|diagnostic| diagnostic.severity).max() {
+        let message = format!("{} more mistakes are left out here", left_out.len());
+        diagnostics.push(Diagnostic { severity, ..Diagnostic::error(message) });
+    }
 }
 
 fn read(

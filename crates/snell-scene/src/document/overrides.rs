@@ -17,7 +17,7 @@ pub(in crate::document) fn apply(root: &mut Node, overrides: &[String], diagnost
         match parse_override(text, source) {
             Ok((keys, value)) => {
                 if let Err(diagnostic) = put(root, &keys, value) {
-                    diagnostics.push(diagnostic);
+                    diagnostics.push(*diagnostic);
                 }
             }
             Err(list) => diagnostics.list.extend(list),
@@ -93,7 +93,7 @@ fn parse_value(text: &str, at: usize, source: SourceId) -> Result<Node, Vec<Diag
 }
 
 /// Puts a value where the keys lead, and makes the tables on the way.
-fn put(root: &mut Node, keys: &[Key], value: Node) -> Result<(), Diagnostic> {
+fn put(root: &mut Node, keys: &[Key], value: Node) -> Result<(), Box<Diagnostic>> {
     let Some((last, way)) = keys.split_last() else { return Ok(()) };
     let mut node = root;
     for (depth, key) in way.iter().enumerate() {
@@ -108,8 +108,8 @@ fn put(root: &mut Node, keys: &[Key], value: Node) -> Result<(), Diagnostic> {
                 let index = match entries.iter().position(|(k, _)| k.name == key.name) {
                     Some(index) => index,
                     None if depth == 0 && matches!(key.name.as_str(), "object" | "light") => {
-                        return Err(Diagnostic::error(format!("the scene has no {}s to set", key.name))
-                            .at(key.span.clone(), "there is none"));
+                        let diagnostic = Diagnostic::error(format!("the scene has no {}s to set", key.name));
+                        return Err(Box::new(diagnostic.at(key.span.clone(), "there is none")));
                     }
                     None => {
                         let table = Node { span: key.span.clone(), value: Value::Table(Vec::new()) };
@@ -145,7 +145,7 @@ fn make_container(node: &mut Node, key: &Key) {
 }
 
 /// The item of a list that a key means: by index from 0, or by its `name`.
-fn find(items: &[Node], key: &Key, place: &str) -> Result<usize, Diagnostic> {
+fn find(items: &[Node], key: &Key, place: &str) -> Result<usize, Box<Diagnostic>> {
     let names = || items.iter().map(|item| item.get("name").and_then(Node::text));
     if let Some(index) = names().position(|name| name == Some(&key.name)) {
         return Ok(index);
@@ -157,12 +157,12 @@ fn find(items: &[Node], key: &Key, place: &str) -> Result<usize, Diagnostic> {
     }
     let diagnostic = Diagnostic::error(format!("`{place}` has nothing called {:?}", key.name))
         .at(key.span.clone(), "neither an index nor a name in it");
-    Err(match (did_you_mean(&key.name, names().flatten()), items.len()) {
+    Err(Box::new(match (did_you_mean(&key.name, names().flatten()), items.len()) {
         (Some(name), _) => diagnostic.help(format!("did you mean {name:?}?")),
         (None, 0) => diagnostic.help("the list is empty"),
         (None, 1) => diagnostic.help("its only index is 0"),
         (None, count) => diagnostic.help(format!("its indices are 0 to {}", count - 1)),
-    })
+    }))
 }
 
 fn path(keys: &[Key]) -> String {

@@ -78,10 +78,9 @@ fn report(errors: Vec<toml::de::Error>, text: &str, source: SourceId, offset: us
             diagnostic.message = format!("`{key}` is defined twice");
         }
         let word = text.get(range.clone()).unwrap_or_default();
-        if word.starts_with(|c: char| c.is_alphabetic()) && !word.contains(['"', '\'', '=', '\n']) {
-            if message.starts_with("invalid") || message.starts_with("string values") {
-                diagnostic = diagnostic.help(format!("a text stands in quotes: \"{word}\""));
-            }
+        let is_word = word.starts_with(|c: char| c.is_alphabetic()) && !word.contains(['"', '\'', '=', '\n']);
+        if is_word && (message.starts_with("invalid") || message.starts_with("string values")) {
+            diagnostic = diagnostic.help(format!("a text stands in quotes: \"{word}\""));
         }
         diagnostics.push(diagnostic.at(Span { source, range }, ""));
     }

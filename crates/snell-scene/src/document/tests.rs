@@ -71,6 +71,25 @@ fn keys_are_unique_and_settable() {
     }
 }
 
+#[test]
+fn very_many_mistakes_are_told_in_part_and_in_time() {
+    let many = |n: usize, line: &dyn Fn(usize) -> String| (0..n).map(line).collect::<String>();
+    let long = "x".repeat(1 << 20);
+    let texts = [
+        "[camera]\n".to_owned() + &many(50_000, &|i| format!("fovv{i} = 1\n")),
+        many(20_000, &|i| format!("[[object]]\nsphere = {{}}\nmaterial = \"m{i}\"\n[material.n{i}]\n")),
+        many(20_000, &|_| "[[object]]\nsphere = {}\nscale = 0\n".to_owned()),
+        format!(
+            "{long} = 1\nambient = \"{long}\"\n[[object]]\nsphere = {{}}\nmaterial = \"{long}\"\n[material.{long}a]\n"
+        ),
+    ];
+    for text in texts {
+        let (scene, diagnostics) = read_scene("a.toml", text.as_bytes(), &MemoryAssets::default(), &[]);
+        assert!(scene.is_none() && diagnostics.has_errors());
+        assert!(diagnostics.list.len() <= MAX_TOLD + 1);
+    }
+}
+
 fn nested(levels: usize) -> String {
     let open = "{ difference = [".repeat(levels - 1);
     let close = "] }".repeat(levels - 1);

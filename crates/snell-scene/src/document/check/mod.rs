@@ -75,12 +75,17 @@ struct Checker<'a> {
 
 impl<'a> Checker<'a> {
     fn tell(&mut self, diagnostic: Diagnostic) {
-        self.told += 1;
-        if self.told > MAX_TOLD {
-            self.untold += 1;
-        } else {
+        if !self.is_enough() {
+            self.told += 1;
             self.diagnostics.push(diagnostic);
         }
+    }
+
+    /// True once enough has been told; what is found then is but counted.
+    fn is_enough(&mut self) -> bool {
+        let enough = self.told >= MAX_TOLD;
+        self.untold += usize::from(enough);
+        enough
     }
 
     /// The whole file: what of each of its entries is right.
@@ -127,6 +132,9 @@ impl<'a> Checker<'a> {
     }
 
     fn wrong_type(&mut self, node: &Node, part: Part<'a>, forms: &[Part<'a>]) {
+        if self.is_enough() {
+            return;
+        }
         let expected = expected(part);
         let message = format!("{} must be {}, but is {}", self.place(), say::kinds(part), node.called());
         let mut diagnostic = Diagnostic::error(message).at(node.span.clone(), format!("expected {expected}"));

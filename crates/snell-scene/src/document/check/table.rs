@@ -63,6 +63,9 @@ impl<'a> Checker<'a> {
 
     /// Tells of a key that is not there, and gives the key that was probably meant.
     pub(super) fn unknown_key(&mut self, key: &Key, form: Part<'a>) -> Option<&'a str> {
+        if self.is_enough() {
+            return None;
+        }
         let place = self.place();
         let message = if self.path.is_empty() {
             format!("there is no key `{}` at the top of a scene", key.name)

@@ -6,6 +6,9 @@ use super::super::tree::Node;
 use super::{Checker, say};
 use crate::diagnostic::{Diagnostic, did_you_mean};
 
+/// How many names a message lists.
+const MAX_LISTED: usize = 8;
+
 impl<'a> Checker<'a> {
     /// A text, in any of the forms that take one.
     pub(super) fn text(&mut self, node: &Node, text: &str, part: Part<'a>, forms: &[Part<'a>]) -> bool {
@@ -27,6 +30,9 @@ impl<'a> Checker<'a> {
     }
 
     fn unknown_word(&mut self, node: &Node, text: &str, part: Part<'a>, words: &[&str]) -> bool {
+        if self.is_enough() {
+            return false;
+        }
         let message = format!("{} is {text:?}, but must be {}", self.place(), say::expected(part));
         let diagnostic = Diagnostic::error(message).at(node.span.clone(), "not one of its words");
         self.tell(match say::nearest(text, words.iter().copied()) {
@@ -37,6 +43,9 @@ impl<'a> Checker<'a> {
     }
 
     fn unknown_color(&mut self, node: &Node, text: &str) -> bool {
+        if self.is_enough() {
+            return false;
+        }
         let diagnostic = Diagnostic::error(format!("{}: there is no colour {text:?}", self.place()))
             .at(node.span.clone(), "expected a colour");
         let help = if text.starts_with('#') {
@@ -56,13 +65,21 @@ impl<'a> Checker<'a> {
         if self.names.refer(table, text) {
             return true;
         }
+        if self.is_enough() {
+            return false;
+        }
         let diagnostic =
             Diagnostic::error(format!("there is no {table} {text:?}")).at(node.span.clone(), "not defined anywhere");
         let names: Vec<&str> = self.names.all(table).collect();
         let help = match say::nearest(text, names.iter().copied()) {
             Some(name) => format!("did you mean {name:?}?"),
             None if names.is_empty() => format!("define it as `[{table}.{}]`", super::super::overrides::key_text(text)),
-            None => format!("there is {}", say::list(names.iter().map(|name| format!("{name:?}")), "and")),
+            None => {
+                let more = names.len().saturating_sub(MAX_LISTED);
+                let rest = (more > 0).then(|| format!("{more} more"));
+                let listed = names.iter().take(MAX_LISTED).map(|name| format!("{name:?}")).chain(rest);
+                format!("there is {}", say::list(listed, "and"))
+            }
         };
         self.tell(diagnostic.help(help));
         false

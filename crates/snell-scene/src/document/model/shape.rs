@@ -98,6 +98,7 @@ impl Default for Rectangle {
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 #[schemars(
+    rename = "Box",
     extend("x-at-most-one" = [["min", "size"], ["min", "center"], ["max", "size"], ["max", "center"]]),
     extend("x-example" = "[[object]]\nbox = { size = [2, 1, 2], center = [0, 0.5, 0] }\n\n[[object]]\nbox = { min = [3, 0, -1], max = [4, 2, 1] }\n"),
 )]

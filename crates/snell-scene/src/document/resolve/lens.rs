@@ -26,7 +26,9 @@ impl Resolver<'_> {
                 fits = false;
             }
         }
-        let radius = |radius: &Option<Located<f64>>| radius.as_ref().map(|radius| radius.value);
+        // A sphere that large is a plane: its sag at the rim is lost in the rounding of its centre.
+        let curved = |radius: &f64| radius.abs() < 1e8 * diameter;
+        let radius = |radius: &Option<Located<f64>>| radius.as_ref().map(|radius| radius.value).filter(curved);
         let profile = Profile { radii: [radius(&lens.radius1), radius(&lens.radius2)], thickness, rim: 0.5 * diameter };
         if fits {
             let edge = profile.thickness_at(profile.rim);
@@ -83,9 +85,8 @@ impl Profile {
         let mut inside = Vec::new();
         let mut outside = Vec::new();
         let mut ends = [-half, half];
-        for surface in 0..2 {
-            // Along the way out of the lens through this surface.
-            let out = if surface == 0 { -1.0 } else { 1.0 };
+        for (surface, out) in [(0, -1.0), (1, 1.0)] {
+            // `out` is the way out of the lens through this surface.
             let vertex = out * half;
             let Some(radius) = self.radii[surface] else { continue };
             let center = vertex + radius;
@@ -93,11 +94,11 @@ impl Profile {
             if radius * out < 0.0 {
                 // Convex. The cylinder ends somewhere beyond the vertex.
                 ends[surface] = vertex + out * (half + self.rim);
+                // How far the lens reaches into this sphere: to the other surface, on the axis or at the rim.
                 let other = 1 - surface;
-                let far =
-                    -out * half + if self.sag(other, self.rim) * out < 0.0 { self.sag(other, self.rim) } else { 0.0 };
-                let other_center = self.radii[other].map(|other_radius| -out * half + other_radius);
-                if self.radii[other] == Some(-radius) && other_center == Some(center) {
+                let sag = self.sag(other, self.rim);
+                let far = if sag * out < 0.0 { -vertex + sag } else { -vertex };
+                if self.radii[other] == Some(-radius) && -vertex - radius == center {
                     // A ball: both surfaces are of the same sphere.
                     if surface == 0 {
                         inside.push(Object::shape(sphere));

@@ -1,10 +1,10 @@
 //! Meshes: in place or from a file, smoothed and fitted as asked.
 
-use snell_math::{Point3, Transform, Vector3, portable};
+use snell_math::{Bounds3, Point3, Transform, Vector3, portable};
 
 use super::Resolver;
 use crate::document::model::{self, Located, Triple};
-use crate::reader::{self, mesh_bounds, polygon, smooth_normals};
+use crate::reader::{self, polygon, smooth_normals};
 use crate::scene::Mesh;
 use crate::table::Id;
 
@@ -38,9 +38,22 @@ impl Resolver<'_> {
     /// The mesh of a file, with the materials that it brings. Where it cannot be had, an empty one: the scene is not given
     /// out then.
     fn mesh_from_file(&mut self, named: &Located<String>, crease_angle: Option<f64>) -> Id<Mesh> {
+        let said_before = self.diagnostics.list.len();
         let file = self
             .file(named)
             .and_then(|(path, bytes)| reader::read_mesh(&path, &bytes, self.assets, self.diagnostics));
+        // What is wrong inside the file is told with the place in the scene that names it.
+        if let Some(span) = &named.span {
+            for diagnostic in &mut self.diagnostics.list[said_before..] {
+                match diagnostic.place {
+                    None => diagnostic.place = Some((span.clone(), "named here".to_owned())),
+                    Some((ref place, _)) if place != span => {
+                        diagnostic.related.push((span.clone(), "named here".to_owned()));
+                    }
+                    Some(_) => {}
+                }
+            }
+        }
         match file {
             Some(mut file) => {
                 smooth(&mut file.mesh, crease_angle);
@@ -80,6 +93,14 @@ impl Resolver<'_> {
             }
         }
         mesh.normals = self.per_vertex(&given.normals, count, name, "normals").iter().map(|n| single(*n)).collect();
+        let normals = given.normals.as_ref();
+        if let Some(number) =
+            normals.and_then(|n| n.value.iter().position(|n| Vector3::from(*n).try_normalize().is_none()))
+        {
+            let span = normals.and_then(|normals| normals.span.clone());
+            let message = format!("normal {number} of the mesh {name:?} has no length, and so no direction");
+            self.error(&span, message, "one of these");
+        }
         mesh.colors = self.per_vertex(&given.colors, count, name, "colors").iter().map(|c| single(*c)).collect();
         let uvs = self.per_vertex(&given.uvs, count, name, "uvs").iter();
         mesh.uvs = uvs.map(|uv| uv.map(|x| x as f32)).collect();
@@ -105,7 +126,8 @@ impl Resolver<'_> {
     /// Scales the longest side to a size, puts the lowest point on y = 0 and the middle above the origin.
     fn fit(&mut self, id: Id<Mesh>, size: &Located<f64>) -> Transform {
         let mesh = &self.scene.meshes[id];
-        let bounds = mesh_bounds(mesh);
+        let point = |p: &[f32; 3]| Point3::from(p.map(f64::from));
+        let bounds = mesh.positions.iter().fold(Bounds3::EMPTY, |sum, p| sum.including(point(p)));
         // What is empty has been told already.
         if bounds.is_empty() {
             return Transform::IDENTITY;
