@@ -42,8 +42,8 @@ impl SurfaceInteraction {
     #[inline]
     pub fn spawn_ray(&self, direction: Vector3) -> Ray {
         let outward = self.geometric_normal.as_vector();
-        let side = if outward.dot(direction) < 0.0 { -OFFSET } else { OFFSET };
-        let origin = self.point + outward * (side * self.error);
+        let side = if outward.dot(direction) < 0.0 { -self.error } else { self.error };
+        let origin = self.point + outward * side;
         Ray::new(origin, direction)
     }
 
@@ -59,7 +59,3 @@ impl SurfaceInteraction {
         self.geometric_normal.dot(direction) >= 0.0
     }
 }
-
-/// How many times a point's error a spawned ray starts off the surface: the error of the point itself, that of adding the
-/// offset, and that of the next intersection with the same surface.
-const OFFSET: f64 = 4.0;

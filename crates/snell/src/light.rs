@@ -61,7 +61,7 @@ impl Light {
         };
         let offset = position - point;
         let distance = offset.length();
-        if !(distance > 0.0) {
+        if distance <= 0.0 {
             return None;
         }
         let to_light = offset * (1.0 / distance);

@@ -1,5 +1,5 @@
 //! OpenEXR (openexr.com, "OpenEXR File Layout") to scene-linear light: scan lines or tiles, half, float or whole numbers,
-//! every compression that the `exr` crate knows. The first part with colours is read, at full resolution: its R, G and B,
+//! every compression but DWA and HTJ2K. The first part with colours is read, at full resolution: its R, G and B,
 //! or Y, or the first layer with such; A where it has one. The picture is the data window; chromaticities other than
 //! Rec. 709's are noted. Deep data and subsampled colours are refused.
 //!
@@ -12,6 +12,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use exr::block::chunk::{Chunk, CompressedBlock};
 use exr::block::reader::ChunksReader;
 use exr::block::{UncompressedBlock, reader::Reader};
+use exr::compression::Compression;
 use exr::meta::attribute::{ChannelList, SampleType};
 use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData};
@@ -32,8 +33,8 @@ const BATCH: usize = 64;
 /// # Errors
 /// See [`super::decode`].
 pub fn decode(bytes: &[u8], limits: &Limits) -> Result<Picture, DecodeError> {
-    // The decompressors beneath index freely into what a file's tables say, and hostile files can make them panic. They
-    // hold no state that outlives the call, so a panic there means what it says: the file is damaged.
+    // The decompressors beneath compute with what a file says of itself; where overflow is checked, B44's panics on damaged
+    // blocks. They hold no state that outlives the call, so a panic there means what is said here: the data is damaged.
     catch_unwind(AssertUnwindSafe(|| decode_unguarded(bytes, limits)))
         .unwrap_or_else(|_| Err(DecodeError::Corrupt("the OpenEXR's compressed data is damaged".into())))
 }
@@ -114,6 +115,12 @@ fn select(headers: &[Header]) -> Result<(usize, Selection), DecodeError> {
                 _ => continue,
             };
             let alpha = channel("A");
+            // What a block of DWA says of its own sizes is believed by the decompressor, and may take all memory.
+            if matches!(header.compression, Compression::DWAA(_) | Compression::DWAB(_)) {
+                return Err(DecodeError::Unsupported(
+                    "the OpenEXR is compressed by DWA; save it with ZIP or PIZ".into(),
+                ));
+            }
             let sampled = |index: &usize| header.channels.list[*index].sampling.area() != 1;
             if colors.iter().chain(&alpha).any(sampled) || header.channels.list.iter().any(|c| c.sampling.area() != 1) {
                 return Err(DecodeError::Unsupported("the OpenEXR holds subsampled channels".into()));

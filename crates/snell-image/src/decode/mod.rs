@@ -109,17 +109,17 @@ fn sniff(bytes: &[u8]) -> Result<Format, DecodeError> {
     if let Some((_, name)) = KNOWN.iter().find(|(magic, _)| bytes.starts_with(magic)) {
         return Err(DecodeError::Unsupported(format!("this is a {name} picture; {CAN_BE}")));
     }
-    let png = READ[0].0;
-    if bytes.len() > 4 && bytes[1..].starts_with(b"PNG") {
+    let head = &bytes[..bytes.len().min(20)];
+    if head.windows(3).any(|window| window == b"PNG") || head.windows(4).any(|window| window == b"IHDR") {
         return Err(DecodeError::Corrupt(
-            "the PNG's signature is damaged; it was probably transferred as text, not as bytes".into(),
+            "the PNG's signature is damaged; perhaps it was transferred as text, not as bytes".into(),
         ));
     }
     if bytes.is_empty() {
         return Err(DecodeError::Corrupt("the picture's file is empty".into()));
     }
     if READ.iter().any(|(magic, _)| magic.starts_with(bytes)) {
-        return Err(DecodeError::Corrupt(format!("the picture ends within its first {} bytes", png.len())));
+        return Err(DecodeError::Corrupt("the picture is cut short: it ends within its first bytes".into()));
     }
     Err(DecodeError::Unsupported(format!("these bytes are no picture of a known kind; {CAN_BE}")))
 }

@@ -5,5 +5,7 @@
 //! can take the place of the binary one without a change to any caller.
 
 pub mod bvh;
+#[cfg(test)]
+pub(crate) mod random;
 
 pub use bvh::{BuildError, Bvh, Candidate, Defect, Statistics};

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use snell_math::{Bounds3, Transform};
 use snell_scene::scene::{self, Object, ObjectKind, Scene};
-use snell_scene::{Diagnostic, Id};
+use snell_scene::{Diagnostic, Id, Severity};
 
 use crate::accel::{BuildError, Bvh};
 use crate::csg::{CsgNode, CsgSolid};
@@ -105,6 +105,10 @@ impl Compiler<'_> {
         if self.primitives > MAX_PRIMITIVES {
             return None;
         }
+        let is_error = |diagnostic: &Diagnostic| diagnostic.severity == Severity::Error;
+        if self.diagnostics.iter().any(is_error) {
+            return None;
+        }
         let space = parts.finish();
         space.map_err(|error| self.diagnostics.push(Diagnostic::error(error.to_string()))).ok()
     }
@@ -178,8 +182,19 @@ impl Compiler<'_> {
     fn add_solid(&mut self, object: &Object, context: Context, parts: &mut Parts) {
         let Context { space_from_parent: space_from_object, material } = context;
         let mut is_opaque = self.is_opaque(material);
-        let node = self.solid_node(object, Transform::IDENTITY, &mut is_opaque, true);
-        let Some(solid) = node.map(CsgSolid::new) else { return };
+        let mut nodes = Vec::new();
+        let solid = match self.add_nodes(object, Transform::IDENTITY, NONE, &mut nodes, &mut is_opaque) {
+            Some(_) => CsgSolid::new(nodes).map_err(|error| error.to_string()),
+            None => Err("one of its parts is neither a solid nor made of solids".to_owned()),
+        };
+        let solid = match solid {
+            Ok(solid) => solid,
+            Err(reason) => {
+                let error = Diagnostic::error(format!("this solid cannot be made: {reason}"));
+                self.diagnostics.push(error.at_optional(object.span.clone(), "this one"));
+                return;
+            }
+        };
         let bounds = solid.bounds();
         let (bounds, placement) = if space_from_object.is_identity() {
             (bounds, NONE)
@@ -192,39 +207,44 @@ impl Compiler<'_> {
         self.push(parts, bounds, primitive, attributes, object);
     }
 
-    /// The tree of a solid, its leaves in the space of the whole. `None` where a part is no solid, which readers refuse.
-    fn solid_node(&self, object: &Object, solid_from_parent: Transform, is_opaque: &mut bool, root: bool) -> Option<CsgNode> {
-        // The whole solid's own transform is that of the primitive.
-        let solid_from_object = if root { Transform::IDENTITY } else { solid_from_parent * object.parent_from_object };
-        match &object.kind {
+    /// Appends the nodes of a solid or of a part of one, children before their parents, and returns the place of the last.
+    /// `None` where a part is no solid, which readers refuse. The whole's own transform is left to its primitive.
+    fn add_nodes(
+        &self,
+        object: &Object,
+        solid_from_object: Transform,
+        inherited_tag: u32,
+        nodes: &mut Vec<CsgNode>,
+        is_opaque: &mut bool,
+    ) -> Option<u32> {
+        let mut add_part = |part: &Object, nodes: &mut Vec<CsgNode>| {
+            let tag = part.material.map_or(inherited_tag, |id| id.index() as u32);
+            self.add_nodes(part, solid_from_object * part.parent_from_object, tag, nodes, is_opaque)
+        };
+        let node = match &object.kind {
             ObjectKind::Shape(shape) => {
-                let tag = object.material.map_or(NONE, |id| id.index() as u32);
-                if tag != NONE {
-                    *is_opaque &= !self.transparent[tag as usize];
-                }
                 let shape = Shape::new(shape)?;
-                Some(match shape.transformed(&solid_from_object) {
-                    Some(moved) => CsgNode::leaf(moved, None, tag),
-                    None => CsgNode::leaf(shape, Some(solid_from_object), tag),
-                })
+                if inherited_tag != NONE {
+                    *is_opaque &= !self.transparent[inherited_tag as usize];
+                }
+                let (shape, solid_from_leaf) = match shape.transformed(&solid_from_object) {
+                    Some(moved) => (moved, None),
+                    None => (shape, Some(solid_from_object)),
+                };
+                CsgNode::Leaf { shape, solid_from_leaf, tag: inherited_tag }
             }
             ObjectKind::Csg { operation, parts } => {
-                let tag = if root { None } else { object.material };
-                let nodes = parts.iter().map(|part| {
-                    let part = match (part.material, tag) {
-                        (None, Some(material)) => &Object { material: Some(material), ..part.clone() },
-                        _ => part,
-                    };
-                    self.solid_node(part, solid_from_object, is_opaque, false)
-                });
-                Some(CsgNode::operation(*operation, nodes.collect::<Option<Vec<_>>>()?))
+                let children = parts.iter().map(|part| add_part(part, nodes)).collect::<Option<_>>()?;
+                CsgNode::Operation { operation: *operation, children }
             }
             ObjectKind::Group(members) => match members.as_slice() {
-                [member] => self.solid_node(member, solid_from_object, is_opaque, false),
-                _ => None,
+                [member] => return add_part(member, nodes),
+                _ => return None,
             },
-            ObjectKind::Instance(_) | ObjectKind::Grid(_) => None,
-        }
+            ObjectKind::Instance(_) | ObjectKind::Grid(_) => return None,
+        };
+        nodes.push(node);
+        Some(nodes.len() as u32 - 1)
     }
 
     fn add_instance(&mut self, object: &Object, id: Id<scene::Prototype>, context: Context, parts: &mut Parts) {

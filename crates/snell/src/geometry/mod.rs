@@ -162,7 +162,7 @@ impl Geometry {
         let placement = &self.world.placements[*placement as usize];
         let space = &self.prototypes[*prototype as usize];
         let mut interaction = self.interaction_in(space, &placement.to_local(ray), hit, hit.inner, *material);
-        placement.carry_out(&mut interaction, ray);
+        placement.carry_out(&mut interaction);
         interaction
     }
 
@@ -181,14 +181,14 @@ impl Geometry {
         let local_ray = placement.map_or(*ray, |placement| placement.to_local(ray));
         let mut vertex_color = None;
         let surface = match (primitive, &hit.local) {
-            (Primitive::Shape { shape, .. }, LocalHit::Shape(local)) => shape.surface(&local_ray, *local),
+            (Primitive::Shape { shape, .. }, LocalHit::Shape(local)) => shape.surface_geometry(&local_ray, *local),
             (Primitive::Mesh { mesh, .. }, LocalHit::Mesh(local)) => {
                 let mesh = &self.meshes[*mesh as usize];
                 vertex_color = mesh.color(local);
                 mesh.surface(&local_ray, local)
             }
             (Primitive::Solid { solid, .. }, LocalHit::Solid(local)) => {
-                self.solids[*solid as usize].surface(&local_ray, local)
+                self.solids[*solid as usize].surface(&local_ray, *local)
             }
             _ => unreachable!("a hit is of its primitive's kind"),
         };
@@ -201,24 +201,17 @@ impl Geometry {
             shading_normal: surface.shading_normal,
             uv: surface.uv,
             object_point: surface.point,
-            object_inside: if self.textured[material as usize] {
-                space::inside(surface.point, surface.geometric_normal, surface.error)
-            } else {
-                Vector3::ZERO
-            },
+            object_inside: Vector3::ZERO,
             vertex_color,
             material,
             object: attributes.object,
             solid: SolidId(u64::from(hit.primitive) << 32 | u64::from(hit.inner)),
         };
-        match placement {
-            Some(placement) => placement.carry_out(&mut interaction, ray),
-            // The shape was brought into its space: patterns still are where its object is.
-            None if attributes.object_space != NONE && self.textured[material as usize] => {
-                let object = &space.object_spaces[attributes.object_space as usize];
-                object.locate(&mut interaction, &hit.local);
-            }
-            None => {}
+        if self.textured[material as usize] {
+            space.locate_on_object(primitive, attributes, &hit.local, &mut interaction);
+        }
+        if let Some(placement) = placement {
+            placement.carry_out(&mut interaction);
         }
         interaction
     }
@@ -226,7 +219,7 @@ impl Geometry {
     /// Which material a hit has: its part's own, the object's, the mesh file's, that of the instance, or the one for all others.
     fn material_of(&self, primitive: &Primitive, attributes: &Attributes, inherited: u32, local: &LocalHit) -> u32 {
         let of_part = match (primitive, local) {
-            (Primitive::Solid { solid, .. }, LocalHit::Solid(hit)) => self.solids[*solid as usize].tag(hit),
+            (Primitive::Solid { solid, .. }, LocalHit::Solid(hit)) => self.solids[*solid as usize].tag(hit.leaf),
             _ => NONE,
         };
         let of_file = match (primitive, local) {

@@ -3,30 +3,21 @@
 use snell_math::{Normal3, Point3, Ray, Transform};
 
 use crate::interaction::SurfaceInteraction;
+use crate::shape::SurfacePoint;
 
 /// A transform from a local space to the one around it.
 #[derive(Clone, Debug)]
 pub struct Placement {
     outer_from_local: Transform,
-    /// By how much the transform stretches an error at most, and by how much its inverse does.
-    stretch: f64,
+    /// By how much the inverse stretches an error at most.
     shrink: f64,
 }
 
-/// Rounding of one product of a matrix and a point: four terms each, relative to the sum of their absolute values.
-const ROUNDING: f64 = 8.0 * f64::EPSILON;
-
 impl Placement {
     pub fn new(outer_from_local: Transform) -> Self {
-        let frobenius = |t: &Transform| {
-            let m = t.affine().matrix3;
-            (m.x_axis.length_squared() + m.y_axis.length_squared() + m.z_axis.length_squared()).sqrt()
-        };
-        Self {
-            stretch: frobenius(&outer_from_local),
-            shrink: frobenius(&outer_from_local.inverse()),
-            outer_from_local,
-        }
+        let back = outer_from_local.inverse().affine().matrix3;
+        let squares = back.x_axis.length_squared() + back.y_axis.length_squared() + back.z_axis.length_squared();
+        Self { outer_from_local, shrink: squares.sqrt() }
     }
 
     /// A ray in the local space; its parameter means the same.
@@ -55,15 +46,18 @@ impl Placement {
 
     /// Carries an interaction from the local space to the one around; where on its object it is, stays.
     #[inline]
-    pub fn carry_out(&self, interaction: &mut SurfaceInteraction, outer_ray: &Ray) {
-        let local = interaction.point;
-        interaction.point = self.outer_from_local.point(local);
-        // The ray was rounded on its way in, the point on its way out, and both will be again for the next ray from here.
-        let translation = Point3(self.outer_from_local.affine().translation).max_abs();
-        let outer_size = outer_ray.origin.max_abs().max(interaction.point.max_abs()) + translation;
-        let rounding = ROUNDING * self.stretch * (local.max_abs() + self.shrink * outer_size);
-        interaction.error = self.stretch * interaction.error + rounding;
-        interaction.geometric_normal = self.outer_from_local.normal(interaction.geometric_normal).normalize();
-        interaction.shading_normal = self.outer_from_local.normal(interaction.shading_normal).normalize();
+    pub fn carry_out(&self, interaction: &mut SurfaceInteraction) {
+        let local = SurfacePoint {
+            point: interaction.point,
+            error: interaction.error,
+            geometric_normal: interaction.geometric_normal,
+            shading_normal: interaction.shading_normal,
+            uv: interaction.uv,
+        };
+        let carried = local.carried(&self.outer_from_local);
+        interaction.point = carried.point;
+        interaction.error = carried.error;
+        interaction.geometric_normal = carried.geometric_normal;
+        interaction.shading_normal = carried.shading_normal;
     }
 }

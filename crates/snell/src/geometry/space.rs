@@ -12,6 +12,9 @@ use crate::texture::RELATIVE_INSET;
 /// No such place: no placement, no material, no inner primitive.
 pub const NONE: u32 = u32::MAX;
 
+/// Up to so many primitives of a space are tested one by one.
+const HANDFUL: usize = 4;
+
 /// Something that a ray can meet. `placement` is a place in its space's list, or [`NONE`] where it stands in the space as it is.
 #[derive(Debug)]
 pub enum Primitive {
@@ -41,22 +44,8 @@ pub struct ObjectSpace {
     pub shape: Shape,
 }
 
-impl ObjectSpace {
-    /// Fills in where on its object an interaction is.
-    pub fn locate(&self, interaction: &mut SurfaceInteraction, local: &LocalHit) {
-        let Self { placement, shape } = self;
-        let point = placement.point_to_local(interaction.point);
-        let normal = placement.normal_to_local(interaction.geometric_normal);
-        interaction.object_point = point;
-        interaction.object_inside = inside(point, normal, placement.error_to_local(interaction.error));
-        if let LocalHit::Shape(hit) = local {
-            interaction.uv = shape.uv(point, hit.part);
-        }
-    }
-}
-
 /// A short way into the solid, surely longer than the point is wrong: where patterns are read.
-pub fn inside(point: Point3, outward: Normal3, error: f64) -> Vector3 {
+fn inside(point: Point3, outward: Normal3, error: f64) -> Vector3 {
     outward.as_vector() * -(8.0 * error + RELATIVE_INSET * point.max_abs())
 }
 
@@ -83,6 +72,35 @@ impl Space {
         if *placement == NONE { None } else { Some(&self.placements[*placement as usize]) }
     }
 
+    /// Fills in where on its object an interaction is, given in this space for shapes that were brought here, and else in the
+    /// primitive's own, which is the object's.
+    pub fn locate_on_object(
+        &self,
+        primitive: &Primitive,
+        attributes: &Attributes,
+        local: &LocalHit,
+        interaction: &mut SurfaceInteraction,
+    ) {
+        let SurfaceInteraction { point, geometric_normal: normal, error, .. } = *interaction;
+        let (object_point, shape) = match (primitive, self.object_spaces.get(attributes.object_space as usize)) {
+            (_, Some(ObjectSpace { placement, shape })) => {
+                let object_point = placement.point_to_local(point);
+                let normal = placement.normal_to_local(normal);
+                interaction.object_inside = inside(object_point, normal, placement.error_to_local(error));
+                (object_point, Some(shape))
+            }
+            (primitive, None) => {
+                interaction.object_inside = inside(point, normal, error);
+                let Primitive::Shape { shape, .. } = primitive else { return };
+                (point, Some(shape))
+            }
+        };
+        interaction.object_point = object_point;
+        if let (Some(shape), LocalHit::Shape(hit)) = (shape, local) {
+            interaction.uv = shape.uv(object_point, hit.part);
+        }
+    }
+
     /// The box of a primitive; all of space for one without bounds.
     pub fn bounds_of(&self, index: u32) -> Bounds3 {
         self.bounds.get(index as usize).copied().unwrap_or(Bounds3::EVERYTHING)
@@ -107,13 +125,17 @@ impl Space {
     ) -> Option<(u32, H)> {
         let mut nearest = None;
         let mut limit = t_max;
+        let first_alone = self.first_alone();
         // The unbounded ones first, since a floor shortens the way through the rest; from the last to the first, and with
         // limits just beyond the nearest, so that of equals the lowest stays.
-        for index in (self.bounds.len()..self.primitives.len()).rev() {
-            if let Some(hit) = test(index as u32, &self.primitives[index], limit.next_up()) {
+        for (index, primitive) in self.primitives.iter().enumerate().skip(first_alone).rev() {
+            if let Some(hit) = test(index as u32, primitive, limit.next_up()) {
                 limit = hit.t();
                 nearest = Some((index as u32, hit));
             }
+        }
+        if first_alone == 0 {
+            return nearest;
         }
         let bounded = self
             .bvh
@@ -121,15 +143,23 @@ impl Space {
         bounded.or(nearest)
     }
 
+    /// From which primitive on they are tested one by one: those without bounds, or all where there is but a handful, which
+    /// is tested faster than its boxes are.
+    #[inline]
+    fn first_alone(&self) -> usize {
+        if self.bounds.len() <= HANDFUL { 0 } else { self.bounds.len() }
+    }
+
     /// Visits every primitive whose box a ray passes before `t_max`, in no particular order, until `visit` says it is enough.
     /// True where it did.
     #[inline]
     pub fn any(&self, ray: &Ray, t_max: f64, mut visit: impl FnMut(u32, &Primitive) -> bool) -> bool {
-        for index in self.bounds.len()..self.primitives.len() {
-            if visit(index as u32, &self.primitives[index]) {
+        let first_alone = self.first_alone();
+        for (index, primitive) in self.primitives.iter().enumerate().skip(first_alone) {
+            if visit(index as u32, primitive) {
                 return true;
             }
         }
-        self.bvh.any(ray, t_max, |index| visit(index, &self.primitives[index as usize]))
+        first_alone > 0 && self.bvh.any(ray, t_max, |index| visit(index, &self.primitives[index as usize]))
     }
 }

@@ -40,7 +40,7 @@ pub fn gather<O: Observer>(
 ) {
     let extinction = medium.absorption + medium.scattering;
     let mean = f64::from(extinction.mean());
-    if !(mean > 0.0) {
+    if mean <= 0.0 {
         return;
     }
     let wo = -task.ray.direction;

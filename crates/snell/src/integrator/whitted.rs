@@ -126,45 +126,52 @@ impl Whitted {
         crossing: Crossing,
         out: &mut Sink<'_, O>,
     ) {
-        let normal = consistent_normal(interaction, wo);
-        let boundary = Boundary { interface, cosine: normal.dot(wo) };
-        let splits = task.band.is_none()
-            && [crossing.before, crossing.beyond]
-                .into_iter()
-                .flatten()
-                .any(|inside| !self.band_indices[inside.material as usize].is_empty());
+        let boundary = Boundary { interaction, crossing, interface, wo, normal: consistent_normal(interaction, wo) };
+        let disperses = |inside: Inside| !self.band_indices[inside.material as usize].is_empty();
+        let splits = task.band.is_none() && [crossing.before, crossing.beyond].into_iter().flatten().any(disperses);
         let mut reflected = Rgb::BLACK;
-        let mut met_total_reflection = false;
-
-        // Each band for itself where the indices differ between them; else all light at once.
-        let alone = [(task.band, Rgb::WHITE)];
-        let split = self.bands.iter().enumerate().map(|(i, band)| (Some(Band(i as u8)), band.weight));
-        let parts = split.take(if splits { usize::MAX } else { 0 }).chain(alone.into_iter().take(usize::from(!splits)));
-        for (band, weight) in parts {
-            let eta_before = self.index(scene, crossing.before, band);
-            let eta_beyond = self.index(scene, crossing.beyond, band);
-            let direction = refract(wo, normal, eta_before / eta_beyond);
-            let (reflect_share, transmit_share) = boundary.shares(eta_before, eta_beyond, direction.is_some());
-            reflected += weight * reflect_share;
-            let Some(direction) = direction else {
-                met_total_reflection = true;
-                continue;
-            };
-            // On a smooth mesh the shading normal may send it back to the side it came from; then the flat one decides.
-            let direction = if interaction.geometric_normal.dot(direction) * interaction.geometric_normal.dot(wo) < 0.0 {
-                direction
-            } else {
-                let flat = interaction.geometric_normal.face_forward(wo);
-                refract(wo, flat, eta_before / eta_beyond).unwrap_or(-wo)
-            };
-            let ray = interaction.spawn_ray(direction);
-            let weight = weight * transmit_share;
-            out.spawn(task, Spawn { kind: RayKind::Refracted, ray, weight, media: crossing.after, band });
-        }
-        if met_total_reflection {
-            out.total_internal_reflection(task);
+        if splits {
+            // Each band for itself: the reflected shares come together again, since reflection does not disperse.
+            for (number, part) in self.bands.iter().enumerate() {
+                let band = Some(Band(number as u8));
+                reflected += part.weight * self.refract_band(scene, task, &boundary, band, part.weight, out);
+            }
+        } else {
+            reflected = self.refract_band(scene, task, &boundary, task.band, Rgb::WHITE, out);
         }
         spawn_reflected(task, interaction, wo, reflected, out);
+    }
+
+    /// Spawns the refracted ray of a band, or of all light, with a weight; returns the coefficient of the reflected one.
+    fn refract_band<O: Observer>(
+        &self,
+        scene: &CompiledScene,
+        task: &RayTask,
+        boundary: &Boundary<'_>,
+        band: Option<Band>,
+        weight: Rgb,
+        out: &mut Sink<'_, O>,
+    ) -> Rgb {
+        let Boundary { interaction, crossing, wo, normal, .. } = *boundary;
+        let eta_before = self.index(scene, crossing.before, band);
+        let eta_beyond = self.index(scene, crossing.beyond, band);
+        let direction = refract(wo, normal, eta_before / eta_beyond);
+        let (reflect_share, transmit_share) = boundary.shares(eta_before, eta_beyond, direction.is_some());
+        let Some(direction) = direction else {
+            out.total_internal_reflection(task);
+            return reflect_share;
+        };
+        let geometric = interaction.geometric_normal.face_forward(wo);
+        // On a smooth mesh the shading normal may send it back to the side it came from; then the flat one decides.
+        let direction = if geometric.dot(direction) < 0.0 {
+            direction
+        } else {
+            refract(wo, geometric, eta_before / eta_beyond).unwrap_or(-wo)
+        };
+        let ray = interaction.spawn_ray(direction);
+        let weight = weight * transmit_share;
+        out.spawn(task, Spawn { kind: RayKind::Refracted, ray, weight, media: crossing.after, band });
+        reflect_share
     }
 
     /// The index of refraction of a body in a band; at the D line where the ray carries all light; 1 outside of all.
@@ -180,13 +187,16 @@ impl Whitted {
 }
 
 /// A boundary as one ray meets it.
-struct Boundary {
+struct Boundary<'a> {
+    interaction: &'a SurfaceInteraction,
+    crossing: Crossing,
     interface: Interface,
-    /// Of the angle of incidence.
-    cosine: f64,
+    wo: Vector3,
+    /// On the side of `wo`.
+    normal: Normal3,
 }
 
-impl Boundary {
+impl Boundary<'_> {
     /// The coefficients of the reflected and the refracted ray.
     ///
     /// Under total internal reflection all that either would carry is reflected: the lecture's function has no transmitted
@@ -195,7 +205,7 @@ impl Boundary {
         let Interface { fresnel, reflect, transmit } = self.interface;
         match (fresnel, refracts) {
             (true, true) => {
-                let reflectance = fresnel_dielectric(self.cosine, eta_before, eta_beyond) as f32;
+                let reflectance = fresnel_dielectric(self.normal.dot(self.wo), eta_before, eta_beyond) as f32;
                 (reflect * reflectance, transmit * (1.0 - reflectance))
             }
             (true, false) => (reflect, Rgb::BLACK),

@@ -80,10 +80,11 @@ impl RenderSettings {
 
     /// Which samples of the sequence each pass takes; all pixels take part in the first.
     pub(super) fn passes(&self) -> Vec<Range<u32>> {
-        match self.antialiasing {
-            Antialiasing::None => vec![0..1],
-            Antialiasing::Samples(count) => vec![0..count.max(1)],
-            Antialiasing::Adaptive => vec![0..1, 1..4, 4..16],
-        }
+        let borders: &[u32] = match self.antialiasing {
+            Antialiasing::None => &[0, 1],
+            Antialiasing::Samples(count) => &[0, count.max(1)],
+            Antialiasing::Adaptive => &[0, 1, 4, 16],
+        };
+        borders.windows(2).map(|pair| pair[0]..pair[1]).collect()
     }
 }

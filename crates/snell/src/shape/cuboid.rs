@@ -99,12 +99,12 @@ impl Cuboid {
         Bounds3::new(self.min, self.max)
     }
 
-    /// Only under a map that takes axes to axes; its scale may differ between them.
+    /// Only under a map that moves and stretches along the axes: turned or mirrored, the faces would change their parts.
     pub(super) fn transformed(&self, map: &Transform) -> Option<Self> {
-        let axes = [Vector3::X, Vector3::Y, Vector3::Z].map(|axis| map.vector(axis));
-        let aligned = axes.iter().all(|v| v.to_array().iter().filter(|&&c| c != 0.0).count() == 1);
-        let Bounds3 { min, max } = map.bounds(&self.bounds());
-        aligned.then_some(Self { min, max })
+        let stretch = Vector3::new(map.vector(Vector3::X).x(), map.vector(Vector3::Y).y(), map.vector(Vector3::Z).z());
+        let axes = [(Vector3::X, 0), (Vector3::Y, 1), (Vector3::Z, 2)];
+        let along = axes.iter().all(|&(v, axis)| map.vector(v) == v * stretch[axis] && stretch[axis] > 0.0);
+        along.then(|| Self { min: map.point(self.min), max: map.point(self.max) })
     }
 }
 

@@ -4,9 +4,10 @@
 //! with radius R(z) = thin + slope z. From the thin end R keeps its relative accuracy up to an apex, where it is 0. The
 //! quadratic is Glassner (ed.), An Introduction to Ray Tracing (1989), section 2.4 (Pharr, Jakob, Humphreys, Physically
 //! Based Rendering, 4th ed., section 6.3), made stable in two ways: the origin is first moved along the ray to where it
-//! comes closest to the axis between the ends; and with x and d the two-dimensional parts of origin and direction across
-//! the axis, κ = slope dz, the discriminant is not b² − ac but the same number written as |R d − κ x|² − (x × d)², which
-//! for a cylinder is the comparison of the line's distance from the axis with the radius.
+//! comes closest to the axis between the ends; and the discriminant is either b² − ac, exact for lines that run along the
+//! side, or, with x and d the two-dimensional parts of origin and direction across the axis and κ = slope dz, the same
+//! number written as |R d − κ x|² − (x × d)², exact near the apex: whichever rounding can do less to. For a cylinder the
+//! second compares the line's distance from the axis with the radius.
 
 use snell_math::{Bounds3, Normal3, Point3, Ray, Transform, Vector3};
 
@@ -78,7 +79,7 @@ impl Frustum {
         } else {
             return None;
         };
-        // The origin moved to where the line is closest to the axis.
+        // The origin moved to where the line is closest to the axis; a t² + 2 b t + c is negative inside.
         let across = d.x() * d.x() + d.y() * d.y();
         let closest = if across > 0.0 { -(o.x() * d.x() + o.y() * d.y()) / across } else { 0.0 };
         let shift = closest.max(slab_enter).min(slab_leave);
@@ -86,12 +87,18 @@ impl Frustum {
         let radius = self.thin + self.slope * (o.z() + d.z() * shift);
         // a t² + 2 b t + c is negative inside.
         let kappa = self.slope * d.z();
-        let a = across - kappa * kappa;
-        let b = x * d.x() + y * d.y() - radius * kappa;
-        let c = x * x + y * y - radius * radius;
-        let (wx, wy) = (radius * d.x() - kappa * x, radius * d.y() - kappa * y);
-        let cross = x * d.y() - y * d.x();
-        let discriminant = wx * wx + wy * wy - cross * cross;
+        let apart = x * x + y * y;
+        let (a, b, c) = (across - kappa * kappa, x * d.x() + y * d.y() - radius * kappa, apart - radius * radius);
+        let discriminant = {
+            let (wx, wy) = (radius * d.x() - kappa * x, radius * d.y() - kappa * y);
+            let cross = x * d.y() - y * d.x();
+            // What rounding can do to each form, in the same unit.
+            let b_terms = (x * d.x()).abs() + (y * d.y()).abs() + (radius * kappa).abs();
+            let (a_terms, c_terms) = (across + kappa * kappa, apart + radius * radius);
+            let plain_error = 2.0 * b.abs() * b_terms + a.abs() * c_terms + c.abs() * a_terms;
+            let geometric_error = 2.0 * (radius * radius * across + kappa * kappa * apart) + cross * cross;
+            if plain_error < geometric_error { b * b - a * c } else { wx * wx + wy * wy - cross * cross }
+        };
         let (side_enter, side_leave) = if a > 0.0 {
             if discriminant.is_nan() || discriminant <= 0.0 {
                 return None;

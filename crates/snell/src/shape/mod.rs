@@ -18,8 +18,9 @@ pub(crate) mod rounding;
 mod span;
 mod sphere;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 mod torus;
+pub mod triangle_mesh;
 
 use snell_math::{Bounds3, Normal3, Point3, Ray, Transform};
 
@@ -256,8 +257,8 @@ impl Shape {
     }
 
     /// The same solid or surface in another space, where the map lets the shape keep its kind: a rotation, mirroring and
-    /// uniform scale for most, any affine map for a plane, one along the axes for a box. It is for intersection only:
-    /// its (u, v) may differ, so take those from the original, at the point carried back.
+    /// uniform scale for most, any affine map for a plane, moves and stretches along the axes for a box. Parts keep their
+    /// numbers, but (u, v) may differ: take those from the original, at the point carried back.
     pub fn transformed(&self, map: &Transform) -> Option<Self> {
         Some(match self {
             Self::Sphere(shape) => Self::Sphere(shape.transformed(map)?),

@@ -6,31 +6,7 @@ use std::ops::ControlFlow;
 use snell_math::{Point3, Ray, Vector3};
 
 use super::*;
-
-/// SplitMix64 (Steele, Lea and Flood, OOPSLA 2014): numbers for tests, the same everywhere.
-struct Random(u64);
-
-impl Random {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// In [−1, 1).
-    fn number(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(&mut self) -> Vector3 {
-        Vector3::new(self.number(), self.number(), self.number())
-    }
-
-    fn point(&mut self) -> Point3 {
-        Point3::ORIGIN + self.vector()
-    }
-}
+use crate::accel::random::Random;
 
 fn cube(center: Point3, half: f64) -> Bounds3 {
     Bounds3::new(center, center).grown(half)
@@ -169,7 +145,7 @@ impl Primitive {
 
 /// A ray of a kind that depends on `i`: random, parallel to axes, from a side of a box, at a box's corner.
 fn test_ray(i: usize, random: &mut Random, boxes: &[Bounds3], scale: f64) -> Ray {
-    let b = &boxes[random.bits() as usize % boxes.len()];
+    let b = &boxes[random.index(boxes.len())];
     let mut origin = Point3::ORIGIN + random.vector() * (2.0 * scale);
     let mut direction = random.vector().to_array();
     match i % 8 {
@@ -189,7 +165,7 @@ fn test_ray(i: usize, random: &mut Random, boxes: &[Bounds3], scale: f64) -> Ray
         }
         4 => origin = b.corner(i / 8 % 8),
         5 => direction = (b.corner(i / 8 % 8) - origin).to_array(),
-        6 => direction = direction.map(|x| x * halvings(random.bits() as usize % 100)),
+        6 => direction = direction.map(|x| x * halvings(random.index(100))),
         _ => {}
     }
     Ray::new(origin, Vector3::from(direction))

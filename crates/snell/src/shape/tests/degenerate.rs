@@ -51,8 +51,7 @@ fn extreme_numbers_do_no_harm() {
     let mut pick = |n: usize| -> Vec<f64> { (0..n).map(|_| values[random.below(11) as usize]).collect() };
     for _ in 0..2000 {
         let v = pick(9);
-        let (p, q, d) =
-            (Point3::new(v[0], v[1], v[2]), Point3::new(v[3], v[4], v[5]), Vector3::new(v[6], v[7], v[8]));
+        let (p, q, d) = (Point3::new(v[0], v[1], v[2]), Point3::new(v[3], v[4], v[5]), Vector3::new(v[6], v[7], v[8]));
         for shape in [
             Shape::Sphere(Sphere::new(p, v[3])),
             Shape::Plane(Plane::new(p, d)),

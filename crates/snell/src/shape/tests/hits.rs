@@ -97,7 +97,8 @@ fn open_frusta_are_hit_where_the_side_of_the_closed_ones_is() {
         let fixture = fixture(&mut random, 0, Point3::ORIGIN, 1.0);
         let radii = [random.unit(), if i % 2 == 0 { 0.0 } else { random.unit() }];
         let (base, top) = (Point3::ORIGIN, Point3::ORIGIN + random.direction() * 0.8);
-        let [closed, open] = [true, false].map(|capped| Shape::Cone(Frustum::new(base, radii[0], top, radii[1], capped)));
+        let [closed, open] =
+            [true, false].map(|capped| Shape::Cone(Frustum::new(base, radii[0], top, radii[1], capped)));
         let ray = ray_at(&mut random, &fixture, 4.0);
         let (mut crossings, mut none) = (Vec::new(), Vec::new());
         closed.crossings(&ray, &mut crossings);

@@ -67,6 +67,8 @@ pub(crate) struct Fixture {
     pub(crate) center: Point3,
     /// Radius of a sphere around the centre that holds it (for a plane: that is looked at).
     pub(crate) size: f64,
+    /// A corner, apex or pole.
+    pub(crate) tip: Point3,
 }
 
 /// Sizes of everything are around `scale`, somewhere around `center`. Kinds 0 to 5 are solid and all but the torus (5)
@@ -80,12 +82,14 @@ pub(crate) fn fixture(random: &mut Random, kind: u64, center: Point3, scale: f64
             distance: Box::new(move |p| (p - center).length() - a),
             center,
             size: a,
+            tip: center + axis * a,
         },
         1 => Fixture {
             shape: Shape::Plane(Plane::new(center, axis)),
             distance: Box::new(move |p| (p - center).dot(axis)),
             center,
             size: scale,
+            tip: center,
         },
         2 => {
             let half = Vector3::new(a, b, scale * random.range(0.3, 1.0));
@@ -95,6 +99,7 @@ pub(crate) fn fixture(random: &mut Random, kind: u64, center: Point3, scale: f64
                 distance: Box::new(move |p| (min.0 - p.0).max(p.0 - max.0).max_element()),
                 center,
                 size: half.length(),
+                tip: max,
             }
         }
         3 | 4 => {
@@ -114,6 +119,7 @@ pub(crate) fn fixture(random: &mut Random, kind: u64, center: Point3, scale: f64
                 }),
                 center,
                 size: length + a,
+                tip: if r0 < r1 { base } else { top },
             }
         }
         5 => {
@@ -127,6 +133,7 @@ pub(crate) fn fixture(random: &mut Random, kind: u64, center: Point3, scale: f64
                 }),
                 center,
                 size: a + minor,
+                tip: center + axis.orthonormal_basis().0 * (a - minor),
             }
         }
         6 => Fixture {
@@ -134,6 +141,7 @@ pub(crate) fn fixture(random: &mut Random, kind: u64, center: Point3, scale: f64
             distance: Box::new(move |p| (p - center).dot(axis)),
             center,
             size: a,
+            tip: center,
         },
         _ => {
             let (x, y) = axis.orthonormal_basis();
@@ -142,6 +150,7 @@ pub(crate) fn fixture(random: &mut Random, kind: u64, center: Point3, scale: f64
                 distance: Box::new(move |p| (p - center).dot(axis)),
                 center,
                 size: a + b,
+                tip: center,
             }
         }
     }
@@ -149,16 +158,21 @@ pub(crate) fn fixture(random: &mut Random, kind: u64, center: Point3, scale: f64
 
 /// A ray that looks at the fixture in one of many ways, some of them degenerate, with a direction of any length.
 pub(crate) fn ray_at(random: &mut Random, fixture: &Fixture, distance: f64) -> Ray {
-    let Fixture { center, size, .. } = *fixture;
+    let Fixture { center, size, tip, .. } = *fixture;
     let origin = center + random.vector_in_ball(distance);
     let length = [1.0, 1e-3, 40.0][random.below(3) as usize];
-    let direction = match random.below(6) {
+    let direction = match random.below(8) {
         // Through the centre.
         0 => center - origin,
         // Along an axis or anywhere, from close by.
         1 => return Ray::new(center + random.vector_in_ball(1.5 * size), random.direction() * length),
         // From the centre.
         2 => return Ray::new(center, random.direction() * length),
+        // Near the tip, by any order of magnitude.
+        3 => {
+            let miss = [0.0, 1e-15, 1e-12, 1e-8, 1e-4, 1e-2][random.below(6) as usize];
+            tip + random.vector_in_ball(size * miss) - origin
+        }
         _ => center + random.vector_in_ball(size) - origin,
     };
     let direction = direction.try_normalize().unwrap_or(Vector3::X);

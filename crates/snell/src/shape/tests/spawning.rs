@@ -5,11 +5,13 @@ use snell_math::{Point3, Ray, Transform, Vector3};
 use super::super::{Shape, SurfacePoint};
 use super::{Fixture, Random, fixture, ray_at};
 
-/// A direction on the outer side of the tangent plane, at any angle to it down to less than rounding.
-fn outward(random: &mut Random, surface: &SurfacePoint) -> Vector3 {
+/// A direction on the outer side of the tangent plane, at any angle to it down to less than rounding, often towards
+/// `aim`: from the side of a cone with that on its axis, along the side.
+fn outward(random: &mut Random, surface: &SurfacePoint, aim: Point3) -> Vector3 {
     let normal = surface.geometric_normal;
     let n = normal.as_vector();
-    let d = random.direction();
+    let towards = (aim - surface.point) * if random.below(2) == 0 { 1.0 } else { -1.0 };
+    let d = if random.below(4) == 0 { towards } else { random.direction() };
     let tangent = (d - n * n.dot(d)).try_normalize().unwrap_or_else(|| n.orthonormal_basis().0);
     let lift = [0.0, 1e-300, 1e-17, 1e-16, 1e-14, 1e-10, 1e-6, 1e-3, 1.0, 1e6][random.below(10) as usize];
     let d = (tangent + n * lift).normalize() * [1.0, 1e-3, 25.0][random.below(3) as usize];
@@ -37,7 +39,7 @@ fn hits_again(seed: u64, kind: u64, factor: f64) -> (usize, usize) {
         let Some((fixture, surface)) = hit_somewhere(&mut random, kind) else { continue };
         for _ in 0..3 {
             let origin = surface.point + surface.geometric_normal.as_vector() * (factor * surface.error);
-            let ray = Ray::new(origin, outward(&mut random, &surface));
+            let ray = Ray::new(origin, outward(&mut random, &surface, fixture.center));
             spawned += 1;
             hit += usize::from(fixture.shape.intersect(&ray, 0.0, f64::INFINITY).is_some());
         }
@@ -86,7 +88,7 @@ fn rays_spawned_inside_solids_find_one_way_out() {
         if (fixture.distance)(origin) > -0.3 * surface.error || !fixture.shape.contains(origin) {
             continue;
         }
-        let ray = Ray::new(origin, -outward(&mut random, &surface));
+        let ray = Ray::new(origin, -outward(&mut random, &surface, fixture.center));
         let mut crossings = Vec::new();
         fixture.shape.crossings(&ray, &mut crossings);
         assert_eq!(crossings.iter().filter(|c| c.t > 0.0).count(), 1, "{:?} {ray:?} {crossings:?}", fixture.shape);
@@ -102,7 +104,7 @@ fn torus_hits_again(factor: f64) -> usize {
     for _ in 0..20_000 {
         let Some((fixture, surface)) = hit_somewhere(&mut random, 5) else { continue };
         let origin = surface.point + surface.geometric_normal.as_vector() * (factor * surface.error);
-        let ray = Ray::new(origin, outward(&mut random, &surface));
+        let ray = Ray::new(origin, outward(&mut random, &surface, fixture.center));
         let Some(hit) = fixture.shape.intersect(&ray, 0.0, f64::INFINITY) else { continue };
         let farthest = (1..10).map(|i| (fixture.distance)(ray.at(hit.t * 0.1 * f64::from(i)))).fold(0.0, f64::max);
         hit_at_once += usize::from(farthest < 0.1 * surface.error);
@@ -126,14 +128,16 @@ fn carried_errors_suffice_under_any_affine_map() {
             let fixture = fixture(&mut random, kind, Point3::ORIGIN + random_offset(i), 1.0);
             let factors = Vector3::new(random.range(0.1, 3.0), random.range(-3.0, -0.1), random.range(1.0, 30.0));
             let angle = random.range(0.0, 6.0);
-            let outer_from_inner = Transform::translate(random.direction() * [0.0, 10.0, 1e5][random.below(3) as usize])
-                * Transform::rotate(random.direction(), angle)
-                * Transform::scale(factors);
+            let outer_from_inner =
+                Transform::translate(random.direction() * [0.0, 10.0, 1e5][random.below(3) as usize])
+                    * Transform::rotate(random.direction(), angle)
+                    * Transform::scale(factors);
             let ray = ray_at(&mut random, &fixture, 5.0);
             let Some(hit) = fixture.shape.intersect(&ray, 0.0, f64::INFINITY) else { continue };
             let surface = fixture.shape.surface(&ray, hit).carried(&outer_from_inner);
             let origin = surface.point + surface.geometric_normal.as_vector() * (factor * surface.error);
-            let ray = outer_from_inner.inverse_ray(&Ray::new(origin, outward(&mut random, &surface)));
+            let ray = outer_from_inner
+                .inverse_ray(&Ray::new(origin, outward(&mut random, &surface, outer_from_inner.point(fixture.center))));
             spawned += 1;
             let found = fixture.shape.intersect(&ray, 0.0, f64::INFINITY);
             // Carried directions are rounded: far away on an infinite plane, or a flat shape's, that is a real hit.
@@ -164,7 +168,7 @@ fn shapes_spawn_in_world_space_after_being_carried_there() {
         let Some(hit) = shape.intersect(&ray, 0.0, f64::INFINITY) else { continue };
         let surface = shape.surface(&ray, hit);
         let origin = surface.point + surface.geometric_normal.as_vector() * surface.error;
-        let spawned = Ray::new(origin, outward(&mut random, &surface));
+        let spawned = Ray::new(origin, outward(&mut random, &surface, map.point(fixture.center)));
         assert!(shape.intersect(&spawned, 0.0, f64::INFINITY).is_none(), "{shape:?}");
     }
 }

@@ -93,9 +93,7 @@ fn carried_shapes_are_hit_at_the_same_parameter_by_the_carried_ray() {
         let fixture = fixture(&mut random, i % 8, Point3::new(0.3, 0.0, 1.0), 1.0);
         let is_box = matches!(fixture.shape, Shape::Box(_));
         let map = if is_box {
-            // Axes to axes, mirrored and stretched.
-            let (x, y, z) = (Vector3::Y * 2.0, Vector3::Z * -0.5, Vector3::X * 3.0);
-            Transform::from_columns(x, y, z, Point3::new(1.0, 2.0, 3.0)).expect("regular")
+            Transform::translate(random.vector_in_ball(10.0)) * Transform::scale(Vector3::new(2.0, 0.5, 3.0))
         } else {
             let mirror = if random.below(2) == 0 { -1.0 } else { 1.0 };
             Transform::translate(random.vector_in_ball(10.0))
@@ -114,15 +112,17 @@ fn carried_shapes_are_hit_at_the_same_parameter_by_the_carried_ray() {
             let here = fixture.shape.surface_geometry(&ray, hit).carried(&map);
             assert!(there.point.distance(here.point) < 1e-5);
             let agree = there.geometric_normal.dot(here.geometric_normal.as_vector()) > 0.99;
-            assert!(agree || is_box || matches!(fixture.shape, Shape::Cylinder(_) | Shape::Cone(_)), "{carried:?}");
+            assert!(agree || hit.part != other.part, "{carried:?}");
         }
     }
     assert!(hits > 3000);
     let skewed = Transform::scale(Vector3::new(1.0, 2.0, 1.0));
     assert!(Shape::Sphere(Sphere::new(Point3::ORIGIN, 1.0)).transformed(&skewed).is_none());
     assert!(Shape::Plane(Plane::new(Point3::ORIGIN, Vector3::Y)).transformed(&skewed).is_some());
-    let turned = Transform::rotate(Vector3::Z, 0.5);
-    assert!(Shape::Box(Cuboid::new(Point3::ORIGIN, Point3::new(1.0, 1.0, 1.0))).transformed(&turned).is_none());
+    let cube = Shape::Box(Cuboid::new(Point3::ORIGIN, Point3::new(1.0, 1.0, 1.0)));
+    for map in [Transform::rotate(Vector3::Z, 0.5), Transform::scale(Vector3::new(1.0, -1.0, 1.0))] {
+        assert!(cube.transformed(&map).is_none());
+    }
 }
 
 #[test]

@@ -1,0 +1,299 @@
+//! Triangle meshes: a watertight intersection over a hierarchy of their own, and the surface at a hit.
+//!
+//! The intersection follows Woop, Benthin and Wald, JCGT 2(1), 2013, with exact signs; see [`watertight`]. Positions,
+//! normals, texture coordinates and colours are `f32` as they came from the file; everything computed from them is `f64`.
+//! All lengths are in the mesh's own space. A ray's direction need not have unit length; `t` is the ray parameter.
+
+mod topology;
+mod watertight;
+
+#[cfg(test)]
+mod tests;
+
+use std::ops::ControlFlow;
+
+use snell_math::{Bounds3, Normal3, Point3, Ray, Rgb, Vector3};
+use snell_scene::scene::Mesh;
+
+use super::SurfacePoint;
+use crate::accel::{BuildError, Bvh};
+use watertight::{Meeting, RaySpace};
+
+/// Triangles over shared vertices, ready to be met by rays. Front faces are counter-clockwise.
+///
+/// ```
+/// use snell::shape::triangle_mesh::TriangleMesh;
+/// use snell_math::{Point3, Ray, Vector3};
+/// use snell_scene::scene::Mesh;
+///
+/// // A unit square of two triangles in the plane z = 0, its front towards +z.
+/// let square = Mesh {
+///     positions: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]],
+///     triangles: vec![[0, 1, 2], [0, 2, 3]],
+///     ..Mesh::default()
+/// };
+/// let mesh = TriangleMesh::new(&square)?;
+/// // No ray slips through the diagonal.
+/// let ray = Ray::new(Point3::new(0.5, 0.5, 2.0), -Vector3::Z);
+/// let hit = mesh.intersect(&ray, 0.0, f64::INFINITY).expect("the square is in the way");
+/// assert_eq!((hit.t, hit.front), (2.0, true));
+/// assert_eq!(mesh.surface(&ray, &hit).point, Point3::new(0.5, 0.5, 0.0));
+/// # Ok::<(), snell::shape::triangle_mesh::MeshError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct TriangleMesh {
+    positions: Vec<[f32; 3]>,
+    triangles: Vec<[u32; 3]>,
+    normals: Vec<[f32; 3]>,
+    uvs: Vec<[f32; 2]>,
+    colors: Vec<[f32; 3]>,
+    triangle_materials: Vec<u16>,
+    bvh: Bvh,
+    bounds: Bounds3,
+}
+
+/// Where a ray meets a mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeshHit {
+    /// The ray parameter.
+    pub t: f64,
+    /// The triangle, by its place in the scene's mesh.
+    pub triangle: u32,
+    /// The weights of the triangle's three vertices: none negative, with sum 1 up to rounding.
+    pub barycentric: [f64; 3],
+    /// The ray comes from the front, where the vertices run counter-clockwise: it enters what the mesh encloses.
+    pub front: bool,
+}
+
+/// Why a mesh cannot be used: it breaks what [`Mesh`] promises.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MeshError {
+    /// A triangle refers to a vertex that is not there.
+    #[error("triangle {0} refers to a vertex that does not exist")]
+    NoSuchVertex(usize),
+    /// A position is NaN or infinite.
+    #[error("the position of vertex {0} is not finite")]
+    NotFinite(usize),
+    /// A list that should be empty or have one entry a vertex, or a triangle, has another length.
+    #[error("there are {found} {what}, not {expected}")]
+    WrongLength {
+        /// Which list.
+        what: &'static str,
+        /// How long it is.
+        found: usize,
+        /// How long it should be.
+        expected: usize,
+    },
+    /// The hierarchy cannot be built.
+    #[error(transparent)]
+    Hierarchy(#[from] BuildError),
+}
+
+impl TriangleMesh {
+    /// Takes over a mesh of the scene and builds its hierarchy. Triangles with two equal corners are never met; leaving
+    /// them out opens no gap.
+    ///
+    /// # Errors
+    /// Where the mesh breaks the promises of [`Mesh`], or has more than 2³¹ triangles.
+    pub fn new(mesh: &Mesh) -> Result<Self, MeshError> {
+        let vertices = mesh.positions.len();
+        for (what, found, expected) in [
+            ("normals", mesh.normals.len(), vertices),
+            ("texture coordinates", mesh.uvs.len(), vertices),
+            ("colours", mesh.colors.len(), vertices),
+            ("materials of triangles", mesh.triangle_materials.len(), mesh.triangles.len()),
+        ] {
+            if found != 0 && found != expected {
+                return Err(MeshError::WrongLength { what, found, expected });
+            }
+        }
+        if let Some(vertex) = mesh.positions.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
+            return Err(MeshError::NotFinite(vertex));
+        }
+        if let Some(triangle) = mesh.triangles.iter().position(|t| t.iter().any(|&v| v as usize >= vertices)) {
+            return Err(MeshError::NoSuchVertex(triangle));
+        }
+        let boxes: Vec<Bounds3> = mesh
+            .triangles
+            .iter()
+            .map(|triangle| {
+                let corners @ [a, b, c] = triangle.map(|vertex| point(mesh.positions[vertex as usize]));
+                let collapsed = a == b || b == c || c == a;
+                if collapsed { Bounds3::EMPTY } else { corners.iter().fold(Bounds3::EMPTY, |b, p| b.including(*p)) }
+            })
+            .collect();
+        Ok(Self {
+            positions: mesh.positions.clone(),
+            triangles: mesh.triangles.clone(),
+            normals: mesh.normals.clone(),
+            uvs: mesh.uvs.clone(),
+            colors: mesh.colors.clone(),
+            triangle_materials: mesh.triangle_materials.clone(),
+            bvh: Bvh::build(&boxes)?,
+            bounds: boxes.iter().fold(Bounds3::EMPTY, |all, b| all.union(b)),
+        })
+    }
+
+    /// The closest hit with t_min < t ≤ t_max; `t_min` may be negative. Where several triangles are met at the same t, the
+    /// lowest wins. A triangle seen exactly edge on is not met. A ray that is not finite or has no direction meets nothing.
+    ///
+    /// Every point of an edge or a vertex belongs to just one of the triangles that a line through it passes from one side
+    /// to the other, as if the line were moved by an infinitely small distance. So no ray slips through, and a line
+    /// crosses a closed mesh as often from the front as from the back, without exception. A line that touches a silhouette
+    /// crosses it twice or never; one on the border of an open mesh may meet it or not.
+    #[inline]
+    pub fn intersect(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<MeshHit> {
+        let space = RaySpace::new(ray)?;
+        let (triangle, (_, meeting)) = self.bvh.closest_between(ray, t_min, t_max, |triangle, t_max| {
+            let meeting = space.meet(self.corners(triangle))?;
+            (t_min < meeting.t && meeting.t <= t_max).then_some((meeting.t, meeting))
+        })?;
+        Some(MeshHit::new(triangle, meeting))
+    }
+
+    /// Visits all hits with t_min < t ≤ t_max, in a fixed order that is not that of t, until `visit` breaks; returns
+    /// whether it did. What is a hit is the same as for [`TriangleMesh::intersect`].
+    #[inline]
+    pub fn for_each_hit(
+        &self,
+        ray: &Ray,
+        t_min: f64,
+        t_max: f64,
+        mut visit: impl FnMut(MeshHit) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let Some(space) = RaySpace::new(ray) else { return ControlFlow::Continue(()) };
+        self.bvh.visit_between(ray, t_min, t_max, |triangle| match space.meet(self.corners(triangle)) {
+            Some(meeting) if t_min < meeting.t && meeting.t <= t_max => visit(MeshHit::new(triangle, meeting)),
+            _ => ControlFlow::Continue(()),
+        })
+    }
+
+    /// True where something is met with t_min < t ≤ t_max: the question of a shadow ray to an opaque mesh.
+    #[inline]
+    pub fn any(&self, ray: &Ray, t_min: f64, t_max: f64) -> bool {
+        self.for_each_hit(ray, t_min, t_max, |_| ControlFlow::Break(())).is_break()
+    }
+
+    /// The surface at a hit of `ray` with this mesh.
+    ///
+    /// A ray that starts at `point + geometric_normal * error`, or on the other side at `point − geometric_normal *
+    /// error`, and leads away from the surface does not meet the triangle, or another one of the same plane, again. The
+    /// error is 64 u times the largest coordinate of the mesh, u = 2⁻⁵³: the corners of any triangle are displaced by
+    /// rounding by less than 12 u of it when a ray from somewhere on the mesh is tested, and the point by less than 8 u.
+    ///
+    /// # Panics
+    /// Where the hit is of another mesh and this one has no such triangle.
+    pub fn surface(&self, ray: &Ray, hit: &MeshHit) -> SurfacePoint {
+        let vertices = self.triangles[hit.triangle as usize].map(|vertex| vertex as usize);
+        let [a, b, c] = vertices.map(|vertex| point(self.positions[vertex]));
+        let (ab, ac) = (b - a, c - a);
+        // A triangle whose corners are three points of a line has no normal; it is met by the rays that rounding would
+        // let pass between its neighbours, and turns to them.
+        let geometric_normal =
+            (ab.cross(ac).try_normalize()).or_else(|| (-ray.direction).try_normalize()).unwrap_or(Vector3::Y);
+        let [u, v] = self.mix(&self.uvs, hit).filter(|uv| uv.iter().all(|x| x.is_finite())).unwrap_or([0.0, 0.0]);
+        let shading_normal = self
+            .mix(&self.normals, hit)
+            .and_then(|normal| Vector3::from(normal).try_normalize())
+            .map_or(geometric_normal.into(), |normal| Normal3::from(normal).face_forward(geometric_normal));
+        SurfacePoint {
+            point: a + ab * hit.barycentric[1] + ac * hit.barycentric[2],
+            error: 64.0 * 0.5 * f64::EPSILON * self.bounds.min.max_abs().max(self.bounds.max.max_abs()),
+            geometric_normal: geometric_normal.into(),
+            shading_normal,
+            uv: [u, v],
+        }
+    }
+
+    /// The colour of the vertices, mixed at a hit; `None` where the mesh has no colours or they are not finite.
+    ///
+    /// # Panics
+    /// As [`TriangleMesh::surface`].
+    pub fn color(&self, hit: &MeshHit) -> Option<Rgb> {
+        let color = self.mix(&self.colors, hit)?;
+        Some(Rgb::from(color.map(|x| x as f32))).filter(|color| color.is_finite())
+    }
+
+    /// A triangle's place in the mesh's list of materials: 0 where one material serves all.
+    pub fn material_index(&self, triangle: u32) -> u16 {
+        self.triangle_materials.get(triangle as usize).copied().unwrap_or(0)
+    }
+
+    /// The number of triangles, those that are never met included.
+    pub fn triangle_count(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// The box around all triangles that can be met, exactly.
+    pub fn bounds(&self) -> Bounds3 {
+        self.bounds
+    }
+
+    /// How many directed edges have no opposite one to match, corners of equal position being one: 0 where the mesh is
+    /// closed. An edge of a hole counts 1. Takes n log n time, and memory for the while.
+    pub fn boundary_edges(&self) -> usize {
+        topology::boundary_edges(&self.positions, &self.triangles)
+    }
+
+    /// True where the mesh encloses something: every edge is matched, see [`TriangleMesh::boundary_edges`].
+    pub fn is_closed(&self) -> bool {
+        !self.bvh.is_empty() && self.boundary_edges() == 0
+    }
+
+    /// True where a point is inside a closed mesh: a ray from it crosses the mesh an odd number of times. Any direction
+    /// will do, since crossings are counted right on edges and vertices too. For an open mesh the answer means nothing.
+    pub fn contains(&self, p: Point3) -> bool {
+        let mut inside = false;
+        if self.bounds.contains(p) {
+            // Parallel to no axis or diagonal: few triangles of things that people make are seen edge on by it.
+            let ray = Ray::new(p, Vector3::new(0.296, 0.854, 0.428));
+            // It never breaks, so there is nothing to know from its end.
+            let _ = self.for_each_hit(&ray, 0.0, f64::INFINITY, |_| {
+                inside = !inside;
+                ControlFlow::Continue(())
+            });
+        }
+        inside
+    }
+
+    /// The memory it takes, in bytes.
+    pub fn bytes(&self) -> usize {
+        size_of::<Self>()
+            + size_of_val(self.positions.as_slice())
+            + size_of_val(self.triangles.as_slice())
+            + size_of_val(self.normals.as_slice())
+            + size_of_val(self.uvs.as_slice())
+            + size_of_val(self.colors.as_slice())
+            + size_of_val(self.triangle_materials.as_slice())
+            + self.bvh.statistics().bytes
+    }
+
+    #[inline]
+    fn corners(&self, triangle: u32) -> [[f32; 3]; 3] {
+        self.triangles[triangle as usize].map(|vertex| self.positions[vertex as usize])
+    }
+
+    /// An attribute of the vertices, mixed at a hit; `None` where the mesh does not have it.
+    fn mix<const N: usize>(&self, attribute: &[[f32; N]], hit: &MeshHit) -> Option<[f64; N]> {
+        if attribute.is_empty() {
+            return None;
+        }
+        let mut mixed = [0.0; N];
+        for (vertex, weight) in self.triangles[hit.triangle as usize].into_iter().zip(hit.barycentric) {
+            for (mixed, x) in mixed.iter_mut().zip(attribute[vertex as usize]) {
+                *mixed += weight * f64::from(x);
+            }
+        }
+        Some(mixed)
+    }
+}
+
+impl MeshHit {
+    fn new(triangle: u32, meeting: Meeting) -> Self {
+        Self { t: meeting.t, triangle, barycentric: meeting.weights, front: meeting.front }
+    }
+}
+
+fn point(position: [f32; 3]) -> Point3 {
+    Point3::from(position.map(f64::from))
+}

@@ -1,0 +1,213 @@
+//! Does a line go through a triangle: a test without gaps between neighbours.
+//!
+//! Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013: a shear takes the ray to the third
+//! axis, and the triangle, seen along the ray, is a triangle of the plane, which either contains the origin or does not.
+//! Every corner is sheared by itself, so triangles that share a corner agree on where it is, whatever rounding did to it.
+//! The paper then evaluates edge functions in the next higher precision where they vanish. Here their signs are exact,
+//! always (Dekker, "A Floating-Point Technique for Extending the Available Precision", 1971), so that what is decided is
+//! decided without any error for the triangles of the plane; and for these, that a closed surface covers the origin an
+//! even number of times, or as often from the front as from the back, is a theorem and not a matter of luck.
+//!
+//! Where the line goes exactly through an edge or a corner, it is thought to be moved by (ε, ε²) in that plane, for an ε
+//! smaller than any number, and then goes through none (Edelsbrunner and Mücke, "Simulation of Simplicity", ACM TOG 9(1),
+//! 1990). Triangles round an edge or a corner so share it out without gap or overlap, whatever meshes they belong to.
+//!
+//! Space: that of the mesh and the ray, any unit of length; t is the ray parameter. The signs are exact while products of
+//! two sheared coordinates neither overflow nor fall below about 1e-290.
+
+use snell_math::{Point3, Ray};
+
+/// A ray with the shear that takes it to the third axis.
+pub(super) struct RaySpace {
+    origin: Point3,
+    /// Which axes of space become the first, second and third; the third is the one the ray is longest on.
+    axes: [usize; 3],
+    /// The slopes of the ray on the first two axes, at most 1 in magnitude, and the inverse of its third component.
+    shear: [f64; 3],
+}
+
+/// Where the line of a ray goes through the plane of a triangle, inside it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Meeting {
+    pub(super) t: f64,
+    /// The barycentric weights of the three corners, none negative.
+    pub(super) weights: [f64; 3],
+    /// The corners are counter-clockwise, seen from where the ray comes from.
+    pub(super) front: bool,
+}
+
+impl RaySpace {
+    /// `None` where the direction is zero or anything is not finite: such a ray meets nothing.
+    #[inline]
+    pub(super) fn new(ray: &Ray) -> Option<Self> {
+        let d = ray.direction;
+        let mut third = if d.y().abs() > d.x().abs() { 1 } else { 0 };
+        if d.z().abs() > d[third].abs() {
+            third = 2;
+        }
+        if !(ray.origin.is_finite() && d.is_finite() && d[third].is_normal()) {
+            return None;
+        }
+        let (first, second) = ((third + 1) % 3, (third + 2) % 3);
+        let inverse = 1.0 / d[third];
+        Some(Self {
+            origin: ray.origin,
+            axes: [first, second, third],
+            shear: [d[first] / d[third], d[second] / d[third], inverse],
+        })
+    }
+
+    /// A corner in the space of the ray: two coordinates across it and one, not scaled, along it.
+    #[inline]
+    fn shear(&self, corner: [f32; 3]) -> [f64; 3] {
+        let [x, y, z] = self.axes.map(|axis| f64::from(corner[axis]) - self.origin[axis]);
+        [x - self.shear[0] * z, y - self.shear[1] * z, z]
+    }
+
+    /// Where the line goes through a triangle. A line in the triangle's plane does not.
+    #[inline]
+    pub(super) fn meet(&self, corners: [[f32; 3]; 3]) -> Option<Meeting> {
+        let [p, q, r] = &corners.map(|corner| self.shear(corner));
+        let (mut a, mut b, mut c) = (edge(q, r), edge(r, p), edge(p, q));
+        if (a < 0.0 || b < 0.0 || c < 0.0) && (a > 0.0 || b > 0.0 || c > 0.0) {
+            return None;
+        }
+        if a == 0.0 || b == 0.0 || c == 0.0 {
+            let moved = |edge: f64, from, to| if edge == 0.0 { moved_side(from, to) } else { edge };
+            (a, b, c) = (moved(a, q, r), moved(b, r, p), moved(c, p, q));
+            if !(a > 0.0 && b > 0.0 && c > 0.0 || a < 0.0 && b < 0.0 && c < 0.0) {
+                return None;
+            }
+        }
+        // Met. The edge functions are the weights of the opposite corners, up to scale. Those of a long and thin triangle
+        // lose most of their digits to the difference of products, and the point would slide along the triangle.
+        let (a, b, c) = (exact_edge(q, r), exact_edge(r, p), exact_edge(p, q));
+        let area = a + b + c;
+        if area == 0.0 || area.is_nan() {
+            return None;
+        }
+        let weights = [a / area, b / area, c / area];
+        Some(Meeting {
+            // A mean of the corners whose weights are not negative, so never in front of them all or behind.
+            t: (weights[0] * p[2] + weights[1] * q[2] + weights[2] * r[2]) * self.shear[2],
+            weights,
+            front: (area < 0.0) == (self.shear[2] > 0.0),
+        })
+    }
+}
+
+/// On which side of the line from `from` to `to` the origin lies: `from` × `to`, with the exact sign. Exchanging the two
+/// points changes the sign and nothing else.
+#[inline]
+fn edge(from: &[f64; 3], to: &[f64; 3]) -> f64 {
+    let (left, right) = (from[0] * to[1], from[1] * to[0]);
+    let difference = left - right;
+    // The difference errs by u (|left| + |right|) + u |difference| with u = 2⁻⁵³, so by less than 3 u of the sum.
+    if difference.abs() > 2.0 * f64::EPSILON * (left.abs() + right.abs()) { difference } else { near_edge(from, to) }
+}
+
+/// [`exact_edge`], where it is needed so seldom that it is kept out of the way.
+#[cold]
+fn near_edge(from: &[f64; 3], to: &[f64; 3]) -> f64 {
+    exact_edge(from, to)
+}
+
+/// `from` × `to` with the exact sign and at most the last two bits wrong.
+#[inline]
+fn exact_edge(from: &[f64; 3], to: &[f64; 3]) -> f64 {
+    let (left, left_error) = exact_product(from[0], to[1]);
+    let (right, right_error) = exact_product(from[1], to[0]);
+    // Where the products do not nearly cancel, the first term decides. Where they do, their difference has no error
+    // (Sterbenz), that of their errors is a sum of two terms, and what does not fit into `high` is less than its last
+    // place or the last place of the two terms that cancel.
+    let (difference, difference_error) = exact_sum(left, -right);
+    let (errors, errors_error) = exact_sum(left_error, -right_error);
+    let (high, low) = exact_sum(difference, errors);
+    high + (low + errors_error + difference_error)
+}
+
+/// a · b = first + second (Dekker; without a fused operation, which not every machine has).
+fn exact_product(a: f64, b: f64) -> (f64, f64) {
+    let split = |x: f64| {
+        let scaled = ((1_u64 << 27) + 1) as f64 * x;
+        let high = scaled - (scaled - x);
+        (high, x - high)
+    };
+    let product = a * b;
+    let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
+    (product, a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low))
+}
+
+/// a + b = first + second (Knuth).
+fn exact_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let b_part = sum - a;
+    (sum, (a - (sum - b_part)) + (b - b_part))
+}
+
+/// The sign of the edge function for an origin moved by (ε, ε²), where it vanishes for the origin itself: of
+/// ε (from.y − to.y) + ε² (to.x − from.x). Zero only where the two points coincide.
+#[cold]
+fn moved_side(from: &[f64; 3], to: &[f64; 3]) -> f64 {
+    if from[1] != to[1] { from[1] - to[1] } else { to[0] - from[0] }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn exact_sign(from: [i64; 2], to: [i64; 2]) -> i32 {
+        let [a, b, c, d] = [from[0], to[1], from[1], to[0]].map(i128::from);
+        (a * b - c * d).signum() as i32
+    }
+
+    fn sign(x: f64) -> i32 {
+        i32::from(x > 0.0) - i32::from(x < 0.0)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 4096, failure_persistence: None, ..ProptestConfig::default() })]
+        #[test]
+        fn signs_are_exact(
+            x in -1 << 26..1_i64 << 26,
+            y in -1 << 26..1_i64 << 26,
+            k in 1..1_i64 << 26,
+            nudge_x in -3..4_i64,
+            nudge_y in -3..4_i64,
+            scale in -60..60_i32,
+        ) {
+            // Two nearly parallel vectors of whole numbers of up to 53 bits, so that i128 has the truth.
+            let (from, to) = ([x, y], [x * k + nudge_x, y * k + nudge_y]);
+            let scale = power_of_two(scale);
+            let point = |p: [i64; 2]| [p[0] as f64 * scale, p[1] as f64 * scale, 0.0];
+            let value = edge(&point(from), &point(to));
+            prop_assert_eq!(sign(value), exact_sign(from, to));
+            prop_assert!(value == -edge(&point(to), &point(from)));
+            // The weight is right too. The truth has less than 53 bits.
+            let truth = (x * nudge_y - y * nudge_x) as f64 * scale * scale;
+            let value = exact_edge(&point(from), &point(to));
+            prop_assert!((value - truth).abs() <= 4.0 * f64::EPSILON * truth.abs());
+        }
+    }
+
+    fn power_of_two(exponent: i32) -> f64 {
+        let factor = if exponent < 0 { 0.5 } else { 2.0 };
+        (0..exponent.abs()).fold(1.0, |x, _| x * factor)
+    }
+
+    /// The twin: the plain difference of products gets signs wrong on the same kind of input.
+    #[test]
+    fn plain_signs_are_not_exact() {
+        let wrong = (1..200_i64)
+            .filter(|i| {
+                let (x, y, k) = (67_108_859 - i, 67_108_001 - 7 * i, 67_000_001);
+                let (from, to) = ([x, y], [x * k + 1, y * k + 1]);
+                let plain = from[0] as f64 * to[1] as f64 - from[1] as f64 * to[0] as f64;
+                sign(plain) != exact_sign(from, to)
+            })
+            .count();
+        assert!(wrong > 100, "{wrong}");
+    }
+}
