@@ -82,26 +82,26 @@ pub struct RenderArguments {
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 
-    /// Change a value of the scene before it is read, as often as needed: --set camera.fov=30
+    /// Change a value of the scene, such as camera.fov=30; as often as needed
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
 
-    /// Settings of a standard: spd, the Standard Procedural Databases
-    #[arg(long, value_name = "NAME")]
+    /// Settings of a standard: those of the Standard Procedural Databases
+    #[arg(long, value_name = "spd", hide_possible_values = true)]
     pub preset: Option<Preset>,
 
-    /// Pixels from left to right; the height follows unless it is given
+    /// Pixels from left to right; alone, the height follows
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..=65536))]
     #[arg(help_heading = "Picture")]
     pub width: Option<u32>,
 
-    /// Pixels from top to bottom; the width follows unless it is given
+    /// Pixels from top to bottom; alone, the width follows
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..=65536))]
     #[arg(help_heading = "Picture")]
     pub height: Option<u32>,
 
     /// The curve from scene-linear to display colours
-    #[arg(long, value_name = "CURVE", help_heading = "Picture")]
+    #[arg(long, value_name = "none|reinhard|filmic", hide_possible_values = true, help_heading = "Picture")]
     pub tone: Option<ToneName>,
 
     /// Brightens by so many stops: 1 doubles the light, -1 halves it
@@ -117,34 +117,34 @@ pub struct RenderArguments {
     #[arg(long, help_heading = "Picture")]
     pub layers: bool,
 
-    /// The depth of the deepest ray: a camera ray has 1, its reflection 2
+    /// Depth of the deepest ray; a camera ray has 1
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     #[arg(help_heading = "Rendering")]
     pub depth: Option<u32>,
 
-    /// Antialiasing: none, adaptive, or rays for every pixel
+    /// Antialiasing; N is rays in every pixel
     #[arg(long, value_name = "none|adaptive|N", value_parser = antialiasing, help_heading = "Rendering")]
     pub aa: Option<Antialiasing>,
 
-    /// What blocks light: all but what is transparent, all, or nothing
-    #[arg(long, value_name = "KIND", help_heading = "Rendering")]
+    /// What blocks light; `filtered`: glass lets some through
+    #[arg(long, value_name = "filtered|opaque|none", hide_possible_values = true, help_heading = "Rendering")]
     pub shadows: Option<ShadowsName>,
 
-    /// Rays that add less than this share to their pixel are not followed; 0 follows all
+    /// Least share of its pixel for a ray to be followed
     #[arg(long, value_name = "SHARE", value_parser = share, help_heading = "Rendering")]
     pub min_weight: Option<f32>,
 
-    /// Wavelength bands that white light splits into at dispersive glass
+    /// Bands of wavelengths that dispersive glass splits
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
     #[arg(help_heading = "Rendering")]
     pub bands: Option<u32>,
 
-    /// Threads; the picture is the same for any number [default: one for each core]
+    /// Threads [default: one for each core]
     #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
     #[arg(help_heading = "Rendering")]
     pub threads: Option<usize>,
 
-    /// Edge of the squares that threads work on, in pixels; the picture is the same for any
+    /// Edge of the squares that threads work on
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..=65536))]
     #[arg(help_heading = "Rendering")]
     pub tile: Option<u32>,
@@ -181,22 +181,19 @@ pub struct CheckArguments {
     pub scenes: Vec<String>,
 }
 
+// The values have no descriptions here, which `--help` would list at length.
+
 /// Names of `--preset`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Preset {
-    /// 513x513 rays at the corners of pixels, depth 5, nothing cut.
-    #[value(help = "513x513 pixels, a ray at each corner of the grid, depth 5, no ray cut for its weight")]
     Spd,
 }
 
 /// Names of `--tone`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ToneName {
-    /// Clipped at full light.
     None,
-    /// Reinhard's.
     Reinhard,
-    /// A filmic one.
     Filmic,
 }
 
@@ -213,11 +210,8 @@ impl From<ToneName> for Tone {
 /// Names of `--shadows`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ShadowsName {
-    /// What is transparent filters light.
     Filtered,
-    /// All surfaces block it.
     Opaque,
-    /// None does.
     None,
 }
 

@@ -72,10 +72,14 @@ fn render(diagnostic: &Diagnostic, sources: &SourceMap, renderer: &Renderer) -> 
                 .annotations(annotations),
         );
     }
-    if let Some(help) = &diagnostic.help {
-        group = group.element(Level::HELP.message(normalize_untrusted_str(help)));
+    let Some(help) = &diagnostic.help else { return renderer.render(&[group]) };
+    let help = normalize_untrusted_str(help);
+    if excerpts.is_empty() {
+        // Without a source there is no margin to hang it on.
+        let help = renderer.render(&[Group::with_title(Level::HELP.secondary_title(help))]);
+        return format!("{}\n{help}", renderer.render(&[group]));
     }
-    renderer.render(&[group])
+    renderer.render(&[group.element(Level::HELP.message(help))])
 }
 
 /// What is shown of one source.
@@ -140,6 +144,13 @@ mod tests {
             "  = help: did you mean \"glass\"?\n\n",
         );
         assert_eq!(plain(diagnostic, sources), expected);
+    }
+
+    #[test]
+    fn without_a_place_there_is_no_margin() {
+        let diagnostic = Diagnostic::error("\"lenz\" is no scene").help("did you mean \"lens\"?");
+        let expected = "error: \"lenz\" is no scene\nhelp: did you mean \"lens\"?\n";
+        assert_eq!(plain(diagnostic, SourceMap::default()), expected);
     }
 
     #[test]

@@ -56,8 +56,7 @@ pub fn run(arguments: &RenderArguments, mut watch: Stopwatch) -> Result<u8, Fail
     }
     let write = watch.lap();
 
-    let mut counted = Diagnostics::default();
-    counted.list = advice(&rendering.statistics, &settings);
+    let counted = Diagnostics { list: advice(&rendering.statistics, &settings), ..Diagnostics::default() };
     diagnostics::print(&counted);
     let times = Times { load, build, render, write, total: watch.total() };
     if !arguments.quiet {
