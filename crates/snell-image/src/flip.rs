@@ -18,7 +18,7 @@ pub const PIXELS_PER_DEGREE: f64 = 3840.0 * PI / 180.0;
 
 /// What is seen of the difference at each pixel, from 0 to 1. The two pictures' order does not matter.
 ///
-/// `pixels_per_degree` is taken between 1 and 1000.
+/// `pixels_per_degree` is taken between 1 and 1000; the paper's where it is NaN.
 ///
 /// # Errors
 /// Where the sizes differ. Bits may differ.
@@ -39,7 +39,8 @@ pub fn flip(reference: &DisplayImage, test: &DisplayImage, pixels_per_degree: f6
     if reference.size() != test.size() {
         return Err(Incomparable::Sizes(reference.size(), test.size()));
     }
-    let pixels_per_degree = pixels_per_degree.max(1.0).min(1000.0);
+    let pixels_per_degree =
+        if pixels_per_degree.is_nan() { PIXELS_PER_DEGREE } else { pixels_per_degree.clamp(1.0, 1000.0) };
     let pictures = [reference, test].map(Opponent::of);
     let [reference_color, test_color] = pictures.each_ref().map(|picture| perceived(picture, pixels_per_degree));
     let [reference_features, test_features] = pictures.each_ref().map(|picture| features(picture, pixels_per_degree));

@@ -27,9 +27,8 @@ const ERROR_BOUND: f64 = 2.5e-7;
 /// The reference: light clipped to [0, 1] and encoded, times `max_code`, rounded to the nearest whole number. NaN is 0.
 #[must_use]
 pub fn code_reference(linear: f32, max_code: u16) -> u16 {
-    // `max` and `min` rather than `clamp`: they take the other operand where one is NaN.
-    let clipped = linear.max(0.0).min(1.0);
-    (f64::from(linear_to_srgb(clipped)) * f64::from(max_code) + 0.5) as u16
+    // Rust converts NaN to 0.
+    (f64::from(linear_to_srgb(linear.clamp(0.0, 1.0))) * f64::from(max_code) + 0.5) as u16
 }
 
 /// Display-linear light to codes from 0 to `max_code`.

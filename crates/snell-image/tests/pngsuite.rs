@@ -1,6 +1,8 @@
 //! PngSuite (Willem van Schaik) and the crashers of libpng and stb: every valid file decodes to the values that others
 //! found in it, every broken one is refused in words.
 
+#![allow(clippy::unwrap_used, reason = "the helpers of a test fail it as the test itself does")]
+
 mod common;
 
 use common::{assets, files};

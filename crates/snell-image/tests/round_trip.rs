@@ -1,5 +1,7 @@
 //! What is encoded decodes to the same numbers, and the same picture to the same bytes.
 
+#![allow(clippy::unwrap_used, reason = "the helpers of a test fail it as the test itself does")]
+
 mod common;
 
 use snell_image::{

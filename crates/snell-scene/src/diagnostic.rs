@@ -14,7 +14,7 @@ pub struct Source {
 
 /// The place of a [`Source`] in its [`SourceMap`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct SourceId(u32);
+pub struct SourceId(pub(crate) u32);
 
 /// All texts that were read.
 #[derive(Clone, Debug, Default)]
@@ -154,7 +154,8 @@ impl Diagnostics {
 
 /// The candidate nearest to a misspelt word, where one is near enough to be worth suggesting.
 ///
-/// Nearness is the Damerau–Levenshtein distance without regard to case, at most a third of the longer word's length.
+/// Nearness is the Damerau–Levenshtein distance without regard to case, at most a third of the longer word's length. Words
+/// of more than 256 bytes are near to nothing: the distance takes time and memory in proportion to both lengths.
 ///
 /// ```
 /// use snell_scene::diagnostic::did_you_mean;
@@ -162,9 +163,14 @@ impl Diagnostics {
 /// assert_eq!(did_you_mean("zebra", ["sphere", "plane"]), None);
 /// ```
 pub fn did_you_mean<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    const LONGEST: usize = 256;
+    if word.len() > LONGEST {
+        return None;
+    }
     let lower = word.to_lowercase();
     candidates
         .into_iter()
+        .filter(|candidate| candidate.len() <= LONGEST)
         .map(|candidate| {
             let distance = strsim::damerau_levenshtein(&lower, &candidate.to_lowercase());
             (distance, candidate)

@@ -6,10 +6,10 @@
 pub mod assets;
 pub mod catalogue;
 pub mod diagnostic;
+pub mod document;
 pub mod reader;
 pub mod scene;
 pub mod table;
-pub mod toml;
 
 pub use assets::{AssetError, Assets};
 pub use diagnostic::{Diagnostic, Diagnostics, Severity, SourceId, SourceMap, Span};

@@ -1,1 +1,13 @@
-//! Test helpers: golden pictures, brute force, degenerate values, planted defects.
+//! Test helpers: golden pictures, degenerate values, planted defects, random numbers that are the same in every run.
+//!
+//! Development only; nothing that is shipped depends on it. Unlike the other libraries it may read files and the
+//! environment, and panics: that is how a test speaks.
+
+pub mod degenerate;
+pub mod golden;
+mod rng;
+mod sabotage;
+
+pub use golden::assert_golden;
+pub use rng::TestRng;
+pub use sabotage::must_fail;

@@ -49,10 +49,11 @@ fn decode_unguarded(bytes: &[u8], limits: &Limits) -> Result<Picture, DecodeErro
     let notes = notes_on(header);
     let (width, height) = sides(header)?;
 
+    // Reads the table of blocks: a file that lies about its size mostly ends within it, before memory is taken.
+    let mut chunks = reader.all_chunks(false).map_err(told)?;
     let mut image = Image::filled(width, height, Rgb::BLACK);
     let mut alpha = selection.alpha.map(|_| Image::filled(width, height, 1.0_f32));
     let mut filled = 0_u64;
-    let mut chunks = reader.all_chunks(false).map_err(told)?;
     let meta_data = chunks.meta_data().clone();
     loop {
         let mut batch = Vec::with_capacity(BATCH);

@@ -5,8 +5,9 @@
 //! ray that only touches a shape does not hit it. Rays with NaN, infinite or zero directions hit nothing.
 //!
 //! Rays spawned on a surface start at `point + normal * error` on the outside, `point − normal * error` on the inside,
-//! with the geometric normal and [`SurfacePoint::error`] as it is (once is enough, see [`rounding`]), and are traced with
-//! `t_min` 0: no other epsilon is needed.
+//! with the geometric normal and [`SurfacePoint::error`] as it is (once is enough, see `rounding.rs`), and are traced with
+//! `t_min` 0: no other epsilon is needed. Which side a ray leaves to is told by the sign of `normal.dot(direction)`, with
+//! the very direction it is traced with.
 
 mod cuboid;
 mod disk;

@@ -1,6 +1,6 @@
 //! Triangle meshes: a watertight intersection over a hierarchy of their own, and the surface at a hit.
 //!
-//! The intersection follows Woop, Benthin and Wald, JCGT 2(1), 2013, with exact signs; see [`watertight`]. Positions,
+//! The intersection follows Woop, Benthin and Wald, JCGT 2(1), 2013, with exact signs. Positions,
 //! normals, texture coordinates and colours are `f32` as they came from the file; everything computed from them is `f64`.
 //! All lengths are in the mesh's own space. A ray's direction need not have unit length; `t` is the ray parameter.
 

@@ -7,11 +7,18 @@ use rayon::prelude::*;
 
 use super::box32::{Box32, larger, smaller};
 
-/// The cost of visiting a node, where testing a primitive costs 1.
+/// The cost of visiting a node, where testing a primitive costs 1. Measured with triangles: half of it traces 5 % faster
+/// and takes a third more memory, twice of it is 5 % slower and takes a third less.
 const TRAVERSAL_COST: f64 = 1.0;
 
-/// Bins an axis.
+/// The most bins an axis.
 const BINS: usize = 16;
+
+/// How many bins an axis are used for so many items. Most nodes of a tree have few items, and for them fewer bins give
+/// as good a tree in less time.
+fn bins_for(items: usize) -> usize {
+    (4 + items / 2).min(BINS)
+}
 
 /// From how many items on one node's binning is shared among threads, and in what portions.
 const PARALLEL_ITEMS: usize = 1 << 15;
@@ -29,8 +36,9 @@ impl Item {
     #[inline]
     fn center(&self, axis: usize) -> f32 {
         let middle = 0.5 * self.bounds.corners[0][axis] + 0.5 * self.bounds.corners[1][axis];
-        // A box from −∞ to ∞ (its f64 corners were beyond the range of f32) has no middle: any number will do.
-        if middle.is_nan() { 0.0 } else { middle.clamp(f32::MIN, f32::MAX) }
+        // A box from −∞ to ∞ (its f64 corners were beyond the range of f32) has NaN for its middle; so written, this makes
+        // a number of it as well.
+        smaller(larger(middle, f32::MIN), f32::MAX)
     }
 }
 
@@ -59,20 +67,22 @@ impl Split {
 struct Grid {
     low: [f32; 3],
     scale: [f32; 3],
+    /// The number of the last bin.
+    last: i32,
 }
 
 impl Grid {
-    fn new(centers: &Box32) -> Self {
+    fn new(centers: &Box32, bins: usize) -> Self {
         let [low, high] = centers.corners;
         // Infinite or zero where the extent is zero or overflows: then all items fall into the same bin of that axis,
         // or into the first and the last, and no harm is done.
-        Self { low, scale: [0, 1, 2].map(|axis| BINS as f32 / (high[axis] - low[axis])) }
+        Self { low, scale: [0, 1, 2].map(|axis| bins as f32 / (high[axis] - low[axis])), last: bins as i32 - 1 }
     }
 
     #[inline]
     fn bin(&self, item: &Item, axis: usize) -> usize {
         // The conversion saturates, and takes NaN to 0.
-        (((item.center(axis) - self.low[axis]) * self.scale[axis]) as usize).min(BINS - 1)
+        (((item.center(axis) - self.low[axis]) * self.scale[axis]) as i32).clamp(0, self.last) as usize
     }
 }
 
@@ -110,7 +120,8 @@ impl Bins {
 /// The cheapest of the cuts between bins; `None` where no cut has a finite cost, as where all centres coincide or the
 /// box has no area.
 pub(super) fn best_split(items: &[Item], bounds: &Box32) -> Option<Split> {
-    let grid = Grid::new(&centers(items));
+    let count = bins_for(items.len());
+    let grid = Grid::new(&centers(items), count);
     let bins = if items.len() < PARALLEL_ITEMS {
         let mut bins = Bins::EMPTY;
         bins.fill(items, &grid);
@@ -127,13 +138,13 @@ pub(super) fn best_split(items: &[Item], bounds: &Box32) -> Option<Split> {
         let boxes = &bins.boxes[axis];
         // Suffix unions first, then one sweep from the left.
         let mut right = [Box32::EMPTY; BINS];
-        right[BINS - 1] = boxes[BINS - 1];
-        for bin in (1..BINS - 1).rev() {
+        right[count - 1] = boxes[count - 1];
+        for bin in (1..count - 1).rev() {
             right[bin] = boxes[bin].union(&right[bin + 1]);
         }
         let mut left = Box32::EMPTY;
         let mut left_count = 0;
-        for bin in 1..BINS {
+        for bin in 1..count {
             left.grow(&boxes[bin - 1]);
             left_count += bins.counts[axis][bin - 1] as usize;
             let right_count = items.len() - left_count;

@@ -9,7 +9,7 @@ use super::{Fixture, Random, fixture, ray_at};
 fn complaint(fixture: &Fixture, ray: &Ray, crossings: &[Crossing]) -> Option<String> {
     let length = ray.direction.length();
     let to_center = fixture.center - ray.origin;
-    let tolerance = 1e-14 * (to_center.length() + fixture.size + fixture.center.max_abs()) * 20.0;
+    let tolerance = 2e-13 * (to_center.length() + fixture.size + fixture.center.max_abs());
     let starts_inside = crossings.first().is_some_and(|first| !first.entering);
     if starts_inside && !matches!(fixture.shape, Shape::Plane(_)) {
         return Some("it starts inside".to_owned());
@@ -21,7 +21,7 @@ fn complaint(fixture: &Fixture, ray: &Ray, crossings: &[Crossing]) -> Option<Str
     }
     for crossing in crossings {
         let distance = (fixture.distance)(ray.at(crossing.t));
-        if distance.abs() > tolerance {
+        if distance.abs() > tolerance + 1e-15 * crossing.t.abs() * length {
             return Some(format!("{crossing:?} is {distance} off the surface, above {tolerance}"));
         }
     }
@@ -66,7 +66,7 @@ fn nearest_complaint(shape: &Shape, ray: &Ray, crossings: &[Crossing]) -> Option
 fn crossings_and_hits_agree_with_the_distance_function() {
     let mut random = Random(1);
     let (mut crossed, mut noticed) = (0, 0);
-    for i in 0..30_000_u64 {
+    for i in 0..12_000_u64 {
         let scale = [1.0, 1e-3, 1e6, 30.0][random.below(4) as usize];
         let center = Point3::ORIGIN + random.vector_in_ball(5.0 * scale);
         let fixture = fixture(&mut random, i % 6, center, scale);
@@ -86,7 +86,7 @@ fn crossings_and_hits_agree_with_the_distance_function() {
             noticed += usize::from(twins.iter().all(|twin| complaint(&fixture, &ray, twin).is_some()));
         }
     }
-    assert!(crossed > 10_000);
+    assert!(crossed > 4000);
     assert_eq!(noticed, crossed);
 }
 

@@ -118,7 +118,7 @@ pub(crate) fn fixture(random: &mut Random, kind: u64, center: Point3, scale: f64
                     (side / slant.sqrt()).max(-z).max(z - length)
                 }),
                 center,
-                size: length + a,
+                size: length + r0.max(r1),
                 tip: if r0 < r1 { base } else { top },
             }
         }

@@ -69,7 +69,7 @@ fn points_are_within_the_error_and_the_error_is_small() {
         let off = (fixture.distance)(surface.point).abs();
         assert!(off <= surface.error, "{:?}: {off} > {}", fixture.shape, surface.error);
         let reach = fixture.center.max_abs() + fixture.size + surface.point.max_abs();
-        assert!(surface.error <= 2e-14 * reach && surface.error >= 0.0);
+        assert!(surface.error <= 2e-14 * reach && surface.error >= 0.0, "{:?} {surface:?} {reach}", fixture.shape);
         for normal in [surface.geometric_normal, surface.shading_normal] {
             assert!((normal.as_vector().length() - 1.0).abs() < 1e-14);
         }

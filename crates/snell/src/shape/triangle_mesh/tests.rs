@@ -298,6 +298,23 @@ proptest! {
     }
 }
 
+/// The twin: from the point itself, without the offset, many rays meet their triangle again.
+#[test]
+fn without_offset_rays_meet_their_plane() {
+    let mut random = Random(6);
+    let mut again = 0;
+    for _ in 0..1000 {
+        let corners = [0, 1, 2].map(|_| random.vector().to_array().map(|x| x as f32));
+        let mesh = mesh(corners.to_vec(), vec![[0, 1, 2]]);
+        let ray = Ray::new(Point3::ORIGIN, target(&mesh, &mut random).to_vector());
+        let Some(hit) = mesh.intersect(&ray, 0.0, f64::INFINITY) else { continue };
+        let surface = mesh.surface(&ray, &hit);
+        let away = Ray::new(surface.point, surface.geometric_normal.as_vector());
+        again += usize::from(mesh.any(&away, 0.0, f64::INFINITY));
+    }
+    assert!(again > 100, "{again}");
+}
+
 #[test]
 fn an_edge_belongs_to_one_triangle() {
     let positions = vec![[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [4.0, 4.0, 0.0], [0.0, 4.0, 0.0], [2.0, 2.0, 0.0]];

@@ -1,0 +1,162 @@
+//! Materials as the author writes them: the lecture's terms, and transparent bodies.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::texture::Paint;
+use super::value::{Color, Either, Form, Forms, Located, MaterialName};
+
+/// What a surface does with light. Each term may be left out; what is left out is not there. An object without a material
+/// is diffuse, 0.8.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+#[schemars(extend("x-example" = "[material.red]\ndiffuse = \"crimson\"\nspecular = 0.6\nshininess = 80\nmirror = 0.1\n\n[material.glass]\ndielectric = { ior = \"N-BK7\" }\n"))]
+pub struct Material {
+    /// The factor on the scene's ambient light. The default is the diffuse colour.
+    pub ambient: Option<Box<Located<Paint>>>,
+    /// The share of light that is scattered evenly in all directions (Lambert).
+    pub diffuse: Option<Box<Located<Paint>>>,
+    /// Strength and colour of the highlights of lights (Phong).
+    pub specular: Option<Box<Located<Paint>>>,
+    /// How sharp highlights are: the exponent of Phong's cosine.
+    #[schemars(range(min = 0, max = 1000000))]
+    pub shininess: f32,
+    /// The share of light that is reflected as by a mirror.
+    pub mirror: Option<Box<Located<Paint>>>,
+    /// Light that it gives off by itself. It lights nothing else but through reflection and refraction.
+    pub emission: Option<Box<Located<Paint>>>,
+    /// Makes it a transparent body.
+    pub dielectric: Option<Box<Located<Dielectric>>>,
+    /// Lit on its outward side alone.
+    pub one_sided: bool,
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self {
+            ambient: None,
+            diffuse: None,
+            specular: None,
+            shininess: 50.0,
+            mirror: None,
+            emission: None,
+            dielectric: None,
+            one_sided: false,
+        }
+    }
+}
+
+impl Forms for Material {
+    const FORMS: &'static [Form] = &[Form::Table];
+}
+
+/// The name of a material of the scene, or a material in place.
+pub type MaterialChoice = Either<MaterialName, Box<Material>>;
+
+/// A transparent body: its surface and its inside.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+#[schemars(extend("x-example" = "[material.bottle]\ndielectric = { ior = 1.52, absorption = { color = [0.2, 0.7, 0.3], distance = 0.5 } }\n"))]
+pub struct Dielectric {
+    /// The index of refraction: a number, the name of a material or glass such as "water", "diamond" or "N-BK7", or a
+    /// dispersion formula.
+    #[schemars(extend("minimum" = 0.1, "maximum" = 100, "default" = 1.5))]
+    pub ior: Located<Ior>,
+    /// Reflection and refraction follow Fresnel's equations; `reflect` and `transmit` scale them. If false, `reflect` and
+    /// `transmit` are the shares themselves.
+    pub fresnel: bool,
+    /// The coefficient of the reflected ray: 1 with `fresnel`, else to be given.
+    pub reflect: Option<Located<Paint>>,
+    /// The coefficient of the refracted ray: 1 with `fresnel`, else to be given.
+    pub transmit: Option<Located<Paint>>,
+    /// How the inside absorbs light on its way.
+    pub absorption: Option<Absorption>,
+    /// How the inside scatters light, as milk does.
+    pub scattering: Option<Scattering>,
+    /// Where transparent bodies overlap, the one of higher priority is there.
+    #[schemars(range(min = -1000000, max = 1000000))]
+    pub priority: i32,
+}
+
+impl Default for Dielectric {
+    fn default() -> Self {
+        Self {
+            ior: Either::A(1.5).into(),
+            fresnel: true,
+            reflect: None,
+            transmit: None,
+            absorption: None,
+            scattering: None,
+            priority: 0,
+        }
+    }
+}
+
+/// An index of refraction: a number, a name, or a formula.
+pub type Ior = Either<f64, Either<String, IorFormula>>;
+
+/// A dispersion formula: exactly one of these. λ is the wavelength in vacuum, in micrometres.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("oneOf" = [{"required": ["cauchy"]}, {"required": ["sellmeier"]}]))]
+pub struct IorFormula {
+    /// Cauchy's coefficients: n = c₀ + c₁ / λ² + c₂ / λ⁴ + …
+    pub cauchy: Option<Cauchy>,
+    /// Sellmeier's coefficients.
+    pub sellmeier: Option<Sellmeier>,
+}
+
+/// The coefficients c₀, c₁, …
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(transparent)]
+#[schemars(inline, transparent)]
+pub struct Cauchy(#[schemars(length(min = 1, max = 8))] pub Vec<f64>);
+
+/// Sellmeier's formula: n² = 1 + constant + Σ b λ² / (λ² − c).
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Sellmeier {
+    /// A further constant, most often 0.
+    #[serde(default)]
+    pub constant: f64,
+    /// The numerators b.
+    #[schemars(length(min = 1, max = 8))]
+    pub b: Vec<f64>,
+    /// The squares c of the resonant wavelengths, as many as there are b.
+    #[schemars(length(min = 1, max = 8), extend("x-unit" = "µm²"))]
+    pub c: Located<Vec<f64>>,
+}
+
+/// Absorption by distance (Beer and Lambert): white light has the colour `color` after `distance`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Absorption {
+    /// The colour that white light has after that distance, above 0 and at most 1 in every component.
+    pub color: Located<Color>,
+    /// The distance.
+    #[serde(default = "super::value::unit")]
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "world units"))]
+    pub distance: f64,
+}
+
+/// Scattering inside a milky body.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+#[schemars(extend("x-example" = "[material.milk]\ndielectric = { ior = 1.35, scattering = { distance = 0.1 } }\n"))]
+pub struct Scattering {
+    /// The mean distance that light goes between two scatterings.
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "world units"))]
+    pub distance: f64,
+    /// How much of each component scatters: its scattering coefficient is this over the distance.
+    #[schemars(extend("default" = 1))]
+    pub color: Color,
+    /// The mean cosine of the scattering angle: 0 scatters evenly, above 0 forward, below 0 backward.
+    #[schemars(range(min = -0.99, max = 0.99))]
+    pub anisotropy: f32,
+}
+
+impl Default for Scattering {
+    fn default() -> Self {
+        Self { distance: 1.0, color: Color::WHITE, anisotropy: 0.0 }
+    }
+}

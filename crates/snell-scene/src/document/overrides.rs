@@ -1,0 +1,180 @@
+//! `--set KEY=VALUE`: values put into a scene's tree before it is checked, so that every mistake points at the option.
+//!
+//! KEY is dotted, through lists by index or by name: `camera.fov`, `object.0.sphere.radius`, `light.key.point.intensity`.
+//! VALUE is a TOML value; what is none and looks like bare words is a text.
+
+use super::parse;
+use super::tree::{Key, Node, Value};
+use crate::diagnostic::{Diagnostic, Diagnostics, SourceId, Span, did_you_mean};
+
+/// The name under which diagnostics know the options.
+const SOURCE_NAME: &str = "--set";
+
+/// Puts the overrides into the tree, in their order.
+pub(in crate::document) fn apply(root: &mut Node, overrides: &[String], diagnostics: &mut Diagnostics) {
+    for text in overrides {
+        let source = diagnostics.sources.add(SOURCE_NAME, text.as_str());
+        match parse_override(text, source) {
+            Ok((keys, value)) => {
+                if let Err(diagnostic) = put(root, &keys, value) {
+                    diagnostics.push(diagnostic);
+                }
+            }
+            Err(list) => diagnostics.list.extend(list),
+        }
+    }
+}
+
+/// The keys on the way and the value.
+fn parse_override(text: &str, source: SourceId) -> Result<(Vec<Key>, Node), Vec<Diagnostic>> {
+    let whole = Span { source, range: 0..text.len() };
+    let wrong = |message: &str, span: Span| {
+        vec![Diagnostic::error(message).at(span, "").help("write KEY=VALUE, such as camera.fov=30")]
+    };
+    let mut keys = Vec::new();
+    let mut at = 0;
+    loop {
+        let key = next_key(text, at, source).map_err(|span| wrong("a key is missing or not closed", span))?;
+        at = key.span.range.end;
+        keys.push(key);
+        if keys.len() > parse::MAX_NESTING {
+            return Err(wrong("too many keys", whole));
+        }
+        match text[at..].trim_start().chars().next() {
+            Some('.') => at += text[at..].find('.').unwrap_or(0) + 1,
+            Some('=') => {
+                at += text[at..].find('=').unwrap_or(0) + 1;
+                if text[at..].trim().is_empty() {
+                    return Err(wrong("there is no value after `=`", whole));
+                }
+                break;
+            }
+            _ => return Err(wrong("there is no `=` between key and value", whole)),
+        }
+    }
+    Ok((keys, parse_value(text, at, source)?))
+}
+
+/// The key that begins at or after a place: bare, or in quotes.
+fn next_key(text: &str, at: usize, source: SourceId) -> Result<Key, Span> {
+    let rest = &text[at..];
+    let start = at + (rest.len() - rest.trim_start().len());
+    let rest = &text[start..];
+    let quote = rest.chars().next().filter(|c| matches!(c, '"' | '\''));
+    let (name, length) = match quote {
+        Some(quote) => {
+            let inner = rest[1..].split(quote).next().unwrap_or_default();
+            (inner, inner.len() + 2)
+        }
+        None => {
+            let inner = rest.split(['.', '=']).next().unwrap_or_default();
+            (inner.trim_end(), inner.trim_end().len())
+        }
+    };
+    let end = start + length;
+    if length == 0 || end > text.len() {
+        return Err(Span { source, range: start..text.len() });
+    }
+    Ok(Key { name: name.to_owned(), span: Span { source, range: start..end } })
+}
+
+fn parse_value(text: &str, at: usize, source: SourceId) -> Result<Node, Vec<Diagnostic>> {
+    let rest = &text[at..];
+    let start = at + (rest.len() - rest.trim_start().len());
+    let word = text[start..].trim_end();
+    let span = Span { source, range: start..start + word.len() };
+    let trimmed = &text[..span.range.end];
+    parse::value(trimmed, start, source).or_else(|errors| {
+        let syntax = |c: char| matches!(c, '"' | '\'' | '[' | ']' | '{' | '}' | '=') || c.is_control();
+        let bare = word.starts_with(|c: char| c.is_alphabetic() || matches!(c, '#' | '.' | '/' | '_'))
+            && !word.contains(syntax);
+        if bare { Ok(Node { span, value: Value::Text(word.to_owned()) }) } else { Err(errors) }
+    })
+}
+
+/// Puts a value where the keys lead, and makes the tables on the way.
+fn put(root: &mut Node, keys: &[Key], value: Node) -> Result<(), Diagnostic> {
+    let Some((last, way)) = keys.split_last() else { return Ok(()) };
+    let mut node = root;
+    for (depth, key) in way.iter().enumerate() {
+        let place = path(&keys[..depth]);
+        make_container(node, key);
+        node = match &mut node.value {
+            Value::List(items) => {
+                let index = find(items, key, &place)?;
+                &mut items[index]
+            }
+            Value::Table(entries) => {
+                let index = match entries.iter().position(|(k, _)| k.name == key.name) {
+                    Some(index) => index,
+                    None if depth == 0 && matches!(key.name.as_str(), "object" | "light") => {
+                        return Err(Diagnostic::error(format!("the scene has no {}s to set", key.name))
+                            .at(key.span.clone(), "there is none"));
+                    }
+                    None => {
+                        let table = Node { span: key.span.clone(), value: Value::Table(Vec::new()) };
+                        entries.push((key.clone(), table));
+                        entries.len() - 1
+                    }
+                };
+                &mut entries[index].1
+            }
+            _ => return Ok(()),
+        };
+    }
+    make_container(node, last);
+    match &mut node.value {
+        Value::List(items) => {
+            let index = find(items, last, &path(way))?;
+            items[index] = value;
+        }
+        Value::Table(entries) => match entries.iter_mut().find(|(key, _)| key.name == last.name) {
+            Some(entry) => *entry = (last.clone(), value),
+            None => entries.push((last.clone(), value)),
+        },
+        _ => {}
+    }
+    Ok(())
+}
+
+/// Makes a table of a value that has no parts, such as a colour that becomes a texture.
+fn make_container(node: &mut Node, key: &Key) {
+    if !matches!(node.value, Value::List(_) | Value::Table(_)) {
+        *node = Node { span: key.span.clone(), value: Value::Table(Vec::new()) };
+    }
+}
+
+/// The item of a list that a key means: by index from 0, or by its `name`.
+fn find(items: &[Node], key: &Key, place: &str) -> Result<usize, Diagnostic> {
+    let names = || items.iter().map(|item| item.get("name").and_then(Node::text));
+    if let Some(index) = names().position(|name| name == Some(&key.name)) {
+        return Ok(index);
+    }
+    if let Ok(index) = key.name.parse::<usize>()
+        && index < items.len()
+    {
+        return Ok(index);
+    }
+    let diagnostic = Diagnostic::error(format!("`{place}` has nothing called {:?}", key.name))
+        .at(key.span.clone(), "neither an index nor a name in it");
+    Err(match (did_you_mean(&key.name, names().flatten()), items.len()) {
+        (Some(name), _) => diagnostic.help(format!("did you mean {name:?}?")),
+        (None, 0) => diagnostic.help("the list is empty"),
+        (None, 1) => diagnostic.help("its only index is 0"),
+        (None, count) => diagnostic.help(format!("its indices are 0 to {}", count - 1)),
+    })
+}
+
+fn path(keys: &[Key]) -> String {
+    keys.iter().map(|key| key_text(&key.name)).collect::<Vec<_>>().join(".")
+}
+
+/// True where a key needs no quotes in TOML.
+pub(in crate::document) fn is_bare(key: &str) -> bool {
+    !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '-'))
+}
+
+/// A key as TOML writes it.
+pub(in crate::document) fn key_text(key: &str) -> String {
+    if is_bare(key) { key.to_owned() } else { format!("{key:?}") }
+}

@@ -1,0 +1,106 @@
+//! Materials.
+
+use snell_math::{Rgb, portable};
+
+use super::Resolver;
+use crate::diagnostic::Diagnostic;
+use crate::document::model::{self, Either, Located, MaterialChoice, Paint};
+use crate::scene::{Dielectric, Material, Medium};
+use crate::table::Id;
+
+/// The diffuse colour of objects without a material.
+const DEFAULT_DIFFUSE: f32 = 0.8;
+
+impl Resolver<'_> {
+    pub(super) fn material(&mut self, material: &model::Material, name: Option<&str>) -> Material {
+        Material {
+            name: name.map(str::to_owned),
+            emission: material.emission.as_ref().map(|paint| self.term(paint)),
+            ambient: material.ambient.as_ref().map(|paint| self.term(paint)),
+            diffuse: material.diffuse.as_ref().map(|paint| self.term(paint)),
+            specular: material.specular.as_ref().map(|paint| self.term(paint)),
+            shininess: material.shininess,
+            mirror: material.mirror.as_ref().map(|paint| self.term(paint)),
+            dielectric: material.dielectric.as_ref().map(|dielectric| self.dielectric(dielectric)),
+            one_sided: material.one_sided,
+        }
+    }
+
+    /// The material that an object names or brings.
+    pub(super) fn chosen_material(&mut self, choice: &MaterialChoice) -> Id<Material> {
+        match choice {
+            // A name that is missing here was left out for its own mistakes.
+            Either::A(name) => self.materials.get(&name.0).copied().unwrap_or(Id::from_index(0)),
+            Either::B(material) => {
+                let material = self.material(material, None);
+                self.scene.materials.push(material)
+            }
+        }
+    }
+
+    /// The material of objects without one: diffuse, so that they are seen.
+    pub(super) fn default_material(&mut self) -> Id<Material> {
+        if let Some(id) = self.default_material {
+            return id;
+        }
+        let diffuse = Some(self.constant(Rgb::gray(DEFAULT_DIFFUSE)));
+        let id = self.scene.materials.push(Material { diffuse, ..Material::default() });
+        self.default_material = Some(id);
+        id
+    }
+
+    fn dielectric(&mut self, located: &Located<model::Dielectric>) -> Dielectric {
+        let dielectric = &located.value;
+        if !dielectric.fresnel {
+            for (key, paint) in [("reflect", &dielectric.reflect), ("transmit", &dielectric.transmit)] {
+                if paint.is_none() {
+                    let message = format!("a dielectric with `fresnel = false` needs the fixed coefficient `{key}`");
+                    let diagnostic = Diagnostic::error(message).at_optional(located.span.clone(), "missing here");
+                    self.diagnostics.push(diagnostic.help("for example `reflect = 0.1, transmit = 0.9`"));
+                }
+            }
+        }
+        let ior = self.ior(&dielectric.ior);
+        let medium = self.medium(dielectric);
+        let mut coefficient = |paint: &Option<Located<Paint>>| match paint {
+            Some(paint) => self.term(paint),
+            None => self.constant(Rgb::WHITE),
+        };
+        Dielectric {
+            ior,
+            fresnel: dielectric.fresnel,
+            reflect: coefficient(&dielectric.reflect),
+            transmit: coefficient(&dielectric.transmit),
+            medium,
+            priority: dielectric.priority,
+        }
+    }
+
+    fn medium(&mut self, dielectric: &model::Dielectric) -> Medium {
+        let mut medium = Medium::default();
+        if let Some(absorption) = &dielectric.absorption {
+            let color = absorption.color.value.0;
+            if color.to_array().iter().all(|&c| c > 0.0 && c <= 1.0) {
+                medium.absorption = color.map(|c| finite((-portable::ln(f64::from(c)) / absorption.distance).max(0.0)));
+            } else {
+                let message = "the colour of an absorption must be above 0 and at most 1 in every component";
+                let [r, g, b] = color.to_array();
+                let diagnostic = Diagnostic::error(message)
+                    .at_optional(absorption.color.span.clone(), format!("this is [{r}, {g}, {b}]"));
+                self.diagnostics.push(diagnostic.help(
+                    "it is the colour that white light has after `distance`; for a component that is absorbed almost at once, write a small number such as 0.001",
+                ));
+            }
+        }
+        if let Some(scattering) = &dielectric.scattering {
+            medium.scattering = scattering.color.0.map(|c| finite(f64::from(c) / scattering.distance));
+            medium.anisotropy = scattering.anisotropy;
+        }
+        medium
+    }
+}
+
+/// As `f32`, the largest where it is larger: after such a distance nothing is left either way.
+fn finite(coefficient: f64) -> f32 {
+    coefficient.min(f64::from(f32::MAX)) as f32
+}

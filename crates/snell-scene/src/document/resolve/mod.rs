@@ -1,0 +1,136 @@
+//! From the model to the [`Scene`]: names become ids, degrees radians, files bytes; and every mistake of meaning is told.
+//!
+//! Each part goes on after a mistake with some harmless value, so that all mistakes are found; where there was any, the
+//! scene is not given out.
+
+mod files;
+mod ior;
+mod lens;
+mod light;
+mod material;
+mod mesh;
+mod object;
+mod order;
+mod placement;
+mod polygon;
+mod shape;
+mod size;
+mod texture;
+mod view;
+
+use std::collections::BTreeMap;
+
+use snell_math::Vector3;
+
+use super::model::{self, Either, Located, Triple};
+use crate::assets::Assets;
+use crate::diagnostic::{Diagnostic, Diagnostics, Span};
+use crate::scene::{self, ImageAsset, Material, Mesh, Prototype, Scene, Texture};
+use crate::table::Id;
+
+/// The largest picture.
+const MAX_PIXELS: u64 = 1 << 28;
+
+/// Resolves a document; `base` is the path of the scene file.
+pub(in crate::document) fn resolve(
+    document: &model::Document,
+    base: &str,
+    assets: &dyn Assets,
+    diagnostics: &mut Diagnostics,
+) -> Scene {
+    let mut resolver = Resolver {
+        scene: Scene::default(),
+        base,
+        assets,
+        diagnostics,
+        images: BTreeMap::new(),
+        textures: BTreeMap::new(),
+        materials: BTreeMap::new(),
+        prototypes: BTreeMap::new(),
+        meshes: BTreeMap::new(),
+        default_material: None,
+    };
+    resolver.settings(document);
+    resolver.scene.ambient = document.ambient.0;
+    resolver.scene.camera = resolver.camera(&document.camera);
+    if let Some(background) = &document.background {
+        resolver.scene.background = resolver.background(background);
+    }
+    resolver.scene.lights = document.light.iter().map(|light| resolver.light(light)).collect();
+    resolver.named_textures(&document.texture);
+    for (name, material) in &document.material.0 {
+        let material = resolver.material(&material.value, Some(&name.value));
+        let id = resolver.scene.materials.push(material);
+        resolver.materials.insert(name.value.clone(), id);
+    }
+    resolver.named_prototypes(&document.prototype);
+    resolver.world(&document.object);
+    resolver.scene
+}
+
+struct Resolver<'a> {
+    scene: Scene,
+    base: &'a str,
+    assets: &'a dyn Assets,
+    diagnostics: &'a mut Diagnostics,
+    /// By resolved path.
+    images: BTreeMap<String, Id<ImageAsset>>,
+    textures: BTreeMap<String, Id<Texture>>,
+    materials: BTreeMap<String, Id<Material>>,
+    prototypes: BTreeMap<String, Id<Prototype>>,
+    /// By resolved path and the bits of the smoothing angle.
+    meshes: BTreeMap<(String, Option<u64>), Id<Mesh>>,
+    /// The material of objects without one, made when first needed.
+    default_material: Option<Id<Material>>,
+}
+
+impl Resolver<'_> {
+    fn error(&mut self, span: &Option<Span>, message: impl Into<String>, label: impl Into<String>) {
+        self.diagnostics.push(Diagnostic::error(message).at_optional(span.clone(), label));
+    }
+
+    /// A direction scaled to unit length; where it has no length, that is told and `instead` is given.
+    fn direction(&mut self, vector: &Located<Triple>, what: &str, instead: Vector3) -> Vector3 {
+        Vector3::from(vector.value).try_normalize().unwrap_or_else(|| {
+            self.error(&vector.span, format!("{what} has no length, and so no direction"), "all three are 0");
+            instead
+        })
+    }
+
+    fn settings(&mut self, document: &model::Document) {
+        let (image, render) = (&document.image, &document.render);
+        if u64::from(image.width) * u64::from(image.height) > MAX_PIXELS {
+            self.diagnostics.push(Diagnostic::error(format!(
+                "the picture of {} × {} pixels is too large: at most {MAX_PIXELS} pixels are possible",
+                image.width, image.height
+            )));
+        }
+        self.scene.settings = scene::Settings {
+            width: image.width,
+            height: image.height,
+            depth: render.depth,
+            min_weight: render.min_weight,
+            antialiasing: match render.antialiasing {
+                Either::A(model::AntialiasingMethod::None) => scene::Antialiasing::None,
+                Either::A(model::AntialiasingMethod::Adaptive) => scene::Antialiasing::Adaptive,
+                Either::B(samples) => scene::Antialiasing::Samples(samples),
+            },
+            shadows: match render.shadows {
+                model::Shadows::Filtered => scene::Shadows::Filtered,
+                model::Shadows::Opaque => scene::Shadows::Opaque,
+                model::Shadows::None => scene::Shadows::None,
+            },
+            bands: render.bands,
+            tone: match image.tone {
+                model::Tone::None => scene::Tone::None,
+                model::Tone::Reinhard => scene::Tone::Reinhard,
+                model::Tone::Filmic => scene::Tone::Filmic,
+            },
+            exposure: image.exposure,
+            pixel_grid: match image.pixel_grid {
+                model::PixelGrid::Centers => scene::PixelGrid::Centers,
+                model::PixelGrid::Corners => scene::PixelGrid::Corners,
+            },
+        };
+    }
+}

@@ -1,0 +1,91 @@
+//! A scene file as a tree of values, each with its place: what TOML, JSON and `--set` are parsed into, and what the checks
+//! and the deserializer read.
+
+use crate::diagnostic::Span;
+
+/// A value and where it is said.
+#[derive(Clone, Debug)]
+pub(in crate::document) struct Node {
+    /// Where: the whole value, or for a table under a header, the header.
+    pub span: Span,
+    /// What.
+    pub value: Value,
+}
+
+/// A value.
+#[derive(Clone, Debug)]
+pub(in crate::document) enum Value {
+    /// `true` or `false`.
+    Boolean(bool),
+    /// A whole number.
+    Integer(i64),
+    /// Any other number, NaN and infinity too.
+    Float(f64),
+    /// A text.
+    Text(String),
+    /// A date or time, or JSON's `null`: nothing that a scene takes. Its name, for messages.
+    Other(&'static str),
+    /// A list.
+    List(Vec<Node>),
+    /// A table, in the order of the file; keys are unique.
+    Table(Vec<(Key, Node)>),
+}
+
+/// A key of a table.
+#[derive(Clone, Debug)]
+pub(in crate::document) struct Key {
+    /// The key.
+    pub name: String,
+    /// Where.
+    pub span: Span,
+}
+
+impl Node {
+    /// What messages call this kind of value.
+    pub fn called(&self) -> &'static str {
+        match &self.value {
+            Value::Boolean(_) => "a truth value",
+            Value::Integer(_) => "a whole number",
+            Value::Float(_) => "a number",
+            Value::Text(_) => "a text",
+            Value::Other(name) => name,
+            Value::List(_) => "a list",
+            Value::Table(_) => "a table",
+        }
+    }
+
+    /// The entry under a key, where this is a table that has it.
+    pub fn get(&self, key: &str) -> Option<&Self> {
+        match &self.value {
+            Value::Table(entries) => entries.iter().find(|(k, _)| k.name == key).map(|(_, node)| node),
+            _ => None,
+        }
+    }
+
+    /// The text, where this is one.
+    pub fn text(&self) -> Option<&str> {
+        match &self.value {
+            Value::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    /// The number, where this is one.
+    pub fn number(&self) -> Option<f64> {
+        match self.value {
+            Value::Integer(number) => Some(number as f64),
+            Value::Float(number) => Some(number),
+            _ => None,
+        }
+    }
+
+    /// How many tables and lists stand within each other, this one counted.
+    pub fn depth(&self) -> usize {
+        let below = match &self.value {
+            Value::List(items) => items.iter().map(Self::depth).max(),
+            Value::Table(entries) => entries.iter().map(|(_, node)| node.depth()).max(),
+            _ => return 0,
+        };
+        1 + below.unwrap_or(0)
+    }
+}

@@ -1,0 +1,4 @@
+//! PLY files, with a scene around what they give.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| snell_fuzz::read_mesh("a.ply", bytes, b""));

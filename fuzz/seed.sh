@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# Fills fuzz/corpus/ with files to start from: ./seed.sh [FOLDER WITH TEST ASSETS]
+# Small files only: large ones slow fuzzing down and show nothing new.
+set -euo pipefail
+cd "$(dirname "$0")"
+assets=${1:-../../shared/assets}
+limit=12k
+for target in ply obj stl nff; do
+    mkdir -p "corpus/$target"
+    # Inputs that once failed are the best to start from.
+    regressions=../crates/snell-scene/tests/data/fuzz/$target
+    if [ -d "$regressions" ]; then cp "$regressions"/* "corpus/$target/"; fi
+done
+[ -d "$assets" ] || { echo "no assets at $assets: nothing more to start from"; exit 0; }
+copy() { # target, name of the files
+    find "$assets" -type f -iname "$2" -size "-$limit" -print0 | while IFS= read -r -d '' file; do
+        cp "$file" "corpus/$1/$(sha1sum < "$file" | cut -c1-16)"
+    done
+}
+copy ply '*.ply'
+copy stl '*.stl'
+copy nff '*.nff'
+find "$assets" -type f -iname '*.obj' -size "-$limit" -print0 | while IFS= read -r -d '' file; do
+    # A mesh, 0xff, and the library beside it.
+    { cat "$file"; printf '\xff'; cat "${file%.*}.mtl" 2>/dev/null || true; } > "corpus/obj/$(sha1sum < "$file" | cut -c1-16)"
+done
+for target in ply obj stl nff; do echo "$target: $(find "corpus/$target" -type f | wc -l) files"; done
