@@ -130,7 +130,7 @@ fn say_closing_line(
     let (width, height) = rendering.image.size();
     let what = match target {
         Target::Nowhere => "rendered".to_owned(),
-        Target::Stdout(_) => "wrote standard output".to_owned(),
+        Target::Stdout(_) => "wrote a PNG to standard output".to_owned(),
         Target::File(path, _) => format!("wrote {}", path.display()),
     };
     let end = match (rendering.complete, covered) {
@@ -139,7 +139,7 @@ fn say_closing_line(
         (false, covered) => format!(", interrupted: {} % of it is black", 100 - covered),
     };
     say(format_args!("{what} ({width}x{height}, {}){end}", seconds_text(total)));
-    if arguments.scene.is_none() && rendering.complete {
+    if arguments.scene.is_none() && arguments.output.is_none() && rendering.complete {
         say(format_args!("This is the built-in scene {}; `snell scenes` lists the others.", builtin::DEFAULT));
     }
 }
