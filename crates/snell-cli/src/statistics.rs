@@ -180,7 +180,8 @@ mod tests {
     #[test]
     fn cut_light_is_worth_a_warning_above_one_percent() {
         let settings = RenderSettings { depth: 5, ..RenderSettings::from(&Settings::default()) };
-        let mut statistics = Statistics { camera_rays: 100, max_depth: 5, ..Statistics::default() };
+        let mut statistics = Statistics::default();
+        (statistics.camera_rays, statistics.max_depth) = (100, 5);
         statistics.add_cut_weight(Rgb::WHITE);
         assert!(advice(&statistics, &settings).is_empty());
         statistics.add_cut_weight(Rgb::WHITE);
@@ -195,7 +196,8 @@ mod tests {
     #[test]
     fn samples_that_are_no_numbers_are_worth_a_warning() {
         let settings = RenderSettings::from(&Settings::default());
-        let statistics = Statistics { camera_rays: 1, nonfinite_samples: 1, ..Statistics::default() };
+        let mut statistics = Statistics::default();
+        (statistics.camera_rays, statistics.nonfinite_samples) = (1, 1);
         assert_eq!(advice(&statistics, &settings).len(), 1);
     }
 

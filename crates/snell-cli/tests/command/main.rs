@@ -1,5 +1,7 @@
 //! The built `snell` command, run in temporary folders as a user runs it.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 mod mistakes;
 mod output;
 mod render;

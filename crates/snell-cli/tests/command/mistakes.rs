@@ -14,11 +14,11 @@ sphere = { radius = 1 }
 material = "glas"
 "#;
 
-const WRONG_SCENE_SAID: &str = r#"error: `camera.fov` is 400, but must be above 0 and below 180
+const WRONG_SCENE_SAID: &str = r#"error: `camera.fov` is 400, but must be from 0.0001 to 179.9
  --> wrong.toml:2:7
   |
 2 | fov = 400
-  |       ^^^ expected a number above 0 and below 180
+  |       ^^^ expected a number from 0.0001 to 179.9, in degrees
 
 error: there is no key `look_to` in `camera`
  --> wrong.toml:3:1
@@ -28,15 +28,21 @@ error: there is no key `look_to` in `camera`
   |
   = help: did you mean `look_at`?
 
-error: unknown material "glas"
+warning: the material "glass" is not used
+ --> wrong.toml:5:11
+  |
+5 | [material.glass]
+  |           ^^^^^ defined here
+
+error: there is no material "glas"
   --> wrong.toml:10:12
    |
 10 | material = "glas"
-   |            ^^^^^^ not defined
+   |            ^^^^^^ not defined anywhere
    |
    = help: did you mean "glass"?
 
-3 errors
+3 errors, 1 warning
 "#;
 
 #[test]
@@ -147,8 +153,8 @@ fn check_reads_all_and_renders_nothing() {
     folder.write("right.toml", "[[object]]\nsphere = {}\n");
     let run = folder.run("check wrong.toml right.toml lens");
     assert_eq!(run.code, Some(1));
-    assert_eq!(run.text(), "wrong.toml: 3 errors\nright.toml: no mistakes\nlens: no mistakes\n");
-    assert_eq!(run.stderr, WRONG_SCENE_SAID.strip_suffix("3 errors\n").unwrap());
+    assert_eq!(run.text(), "wrong.toml: 3 errors, 1 warning\nright.toml: no mistakes\nlens: no mistakes\n");
+    assert_eq!(run.stderr, WRONG_SCENE_SAID.strip_suffix("3 errors, 1 warning\n").unwrap());
     assert_eq!(folder.good("check right.toml").text(), "right.toml: no mistakes\n");
     assert_eq!(folder.run("check nothing-like-it").code, Some(1));
     assert_eq!(folder.names(), ["right.toml", "wrong.toml"]);

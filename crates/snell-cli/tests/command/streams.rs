@@ -14,7 +14,7 @@ fn the_schema_is_json() {
 fn completions_and_manual_pages_are_there() {
     let folder = Folder::new();
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
-        assert!(folder.good(&format!("completions {shell}")).text().contains("--min-weight"), "{shell}");
+        assert!(folder.good(&format!("completions {shell}")).text().contains("min-weight"), "{shell}");
     }
     assert!(folder.good("man").text().contains(".TH snell 1"));
     assert!(folder.good("man render").text().contains("min\\-weight"));
