@@ -6,8 +6,8 @@ use snell::scene::scene::Settings;
 use crate::arguments::RenderArguments;
 use crate::failure::Failure;
 
-/// The most pixels of a picture: the film of this many takes tens of gigabytes.
-const MOST_PIXELS: u64 = 1 << 30;
+/// The most pixels of a picture, 16384 × 16384: rendering so many takes about 25 gigabytes.
+const MOST_PIXELS: u64 = 1 << 28;
 
 /// Puts what the command line says into a scene's settings.
 pub fn apply(arguments: &RenderArguments, settings: &mut Settings) -> Result<(), Failure> {
