@@ -3,7 +3,8 @@
 use snell_math::Dispersion;
 
 use super::Resolver;
-use crate::diagnostic::{Diagnostic, did_you_mean};
+use crate::catalogue::{self, Entry};
+use crate::diagnostic::Diagnostic;
 use crate::document::model::{Either, Ior, IorFormula, Located};
 
 /// The wavelengths between which a formula must give an index, in micrometres: what eyes see.
@@ -13,10 +14,10 @@ impl Resolver<'_> {
     pub(super) fn ior(&mut self, ior: &Located<Ior>) -> Dispersion {
         match &ior.value {
             Either::A(number) => Dispersion::Constant(*number),
-            Either::B(Either::A(name)) => resolve_ior_name(name).unwrap_or_else(|suggestion| {
+            Either::B(Either::A(name)) => catalogue::lookup(name).map(Entry::dispersion).unwrap_or_else(|| {
                 let diagnostic = Diagnostic::error(format!("there is no material {name:?} of known index"))
                     .at_optional(ior.span.clone(), "not in the catalogue");
-                self.diagnostics.push(match suggestion {
+                self.diagnostics.push(match catalogue::suggest(name) {
                     Some(near) => diagnostic.help(format!("did you mean {near:?}?")),
                     None => diagnostic.help("write the index as a number, such as 1.5"),
                 });
@@ -63,35 +64,3 @@ fn index(dispersion: &Dispersion, wavelength: f64) -> f64 {
         }
     }
 }
-
-/// The index of a material by its name, or the nearest name. The one place that knows the catalogue.
-fn resolve_ior_name(name: &str) -> Result<Dispersion, Option<String>> {
-    let plain = |name: &str| name.to_lowercase().replace(['-', '_'], " ");
-    let wanted = plain(name);
-    match LECTURE.iter().find(|(known, _)| plain(known) == wanted) {
-        Some((_, index)) => Ok(Dispersion::Constant(*index)),
-        None if wanted == "n bk7" || wanted == "bk7" => Ok(Dispersion::Sellmeier {
-            constant: 0.0,
-            terms: vec![(1.03961212, 0.00600069867), (0.231792344, 0.0200179144), (1.01046945, 103.560653)],
-        }),
-        None => {
-            let names = LECTURE.iter().map(|(known, _)| *known).chain(["N-BK7"]);
-            Err(did_you_mean(name, names).map(str::to_owned))
-        }
-    }
-}
-
-/// The table of the lecture, at 589.3 nm.
-const LECTURE: [(&str, f64); 11] = [
-    ("vacuum", 1.0),
-    ("helium", 1.000036),
-    ("air", 1.0002926),
-    ("ice", 1.31),
-    ("water", 1.333),
-    ("ethanol", 1.36),
-    ("glycerine", 1.4729),
-    ("rock salt", 1.516),
-    ("glass", 1.5),
-    ("cubic zirconia", 2.16),
-    ("diamond", 2.419),
-];

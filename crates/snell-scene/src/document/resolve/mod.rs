@@ -12,7 +12,6 @@ mod mesh;
 mod object;
 mod order;
 mod placement;
-mod polygon;
 mod shape;
 mod size;
 mod texture;
