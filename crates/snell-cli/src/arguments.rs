@@ -1,0 +1,321 @@
+//! The command line, as clap reads it and `--help`, the manual and the completions describe it.
+
+use std::path::PathBuf;
+
+use clap::builder::RangedU64ValueParser;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
+use snell::scene::scene::{Antialiasing, Shadows, Tone};
+
+const EXAMPLES: &str = "\
+Examples:
+  snell render                             a first picture: nine-red-balls.png
+  snell render lens --width 1920           a built-in scene; `snell scenes` lists them
+  snell render my.toml -o my.png           a scene of yours
+  snell render bunny.ply                   a mesh, framed and lit by itself
+  snell scenes lens --extract .            a built-in scene to begin with
+  snell check my.toml                      all mistakes of a scene, with line and column";
+
+const RENDER_EXAMPLES: &str = "\
+Examples:
+  snell render
+  snell render lens --width 1920 -o lens.png
+  snell render my.toml --set camera.fov=30 --set material.glass.dielectric.ior=diamond
+  snell render my.toml --aa 64 --bits 16 -o my.png
+  snell render my.toml --layers -o my.exr  scene-linear colours, depth, normals, objects
+  snell render my.toml --preview           in the terminal only
+  snell render my.toml -o - | display      to another program
+  snell render balls.nff --preset spd      by the rules of the Standard Procedural Databases
+
+Exit codes:
+  0    the picture is there
+  1    the scene or a file is wrong
+  2    the command line is wrong
+  130  interrupted by Ctrl-C (143: terminated); what was done is written.
+       A second Ctrl-C ends at once, and nothing is written";
+
+/// Renders glass, mirrors and what is seen in them, by recursive ray tracing
+#[derive(Debug, Parser)]
+#[command(name = "snell", version, after_help = EXAMPLES, max_term_width = 100, disable_help_subcommand = true)]
+#[command(arg_required_else_help = true)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a scene to a picture
+    Render(Box<RenderArguments>),
+    /// List the built-in scenes, print one, or copy it to edit it
+    Scenes(ScenesArguments),
+    /// Look for mistakes in scenes without rendering them
+    Check(CheckArguments),
+    /// Print the JSON Schema of scene files, for editors
+    Schema,
+    /// Print completions for a shell, to be sourced by it
+    #[command(hide = true)]
+    Completions {
+        /// The shell.
+        shell: Shell,
+    },
+    /// Print the manual page, in roff, of the program or of one of its commands
+    #[command(hide = true)]
+    Man {
+        /// A command, such as `render`.
+        command: Option<String>,
+    },
+}
+
+/// `snell render`.
+#[derive(Args, Debug)]
+#[command(after_help = RENDER_EXAMPLES)]
+pub struct RenderArguments {
+    /// A scene (.toml, .json, .nff), a mesh (.ply, .obj, .stl) or the name of a built-in scene
+    /// [default: nine-red-balls]
+    pub scene: Option<String>,
+
+    /// Where the picture goes: a .png or .exr file, or `-` for a PNG on standard output
+    /// [default: the scene's name with .png, in the current folder]
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+
+    /// Change a value of the scene, such as camera.fov=30; as often as needed
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+
+    /// Settings of a standard: those of the Standard Procedural Databases
+    #[arg(long, value_name = "spd", hide_possible_values = true)]
+    pub preset: Option<Preset>,
+
+    /// Pixels from left to right; alone, the height follows
+    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..=65536))]
+    #[arg(help_heading = "Picture")]
+    pub width: Option<u32>,
+
+    /// Pixels from top to bottom; alone, the width follows
+    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..=65536))]
+    #[arg(help_heading = "Picture")]
+    pub height: Option<u32>,
+
+    /// The curve from scene-linear to display colours
+    #[arg(long, value_name = "none|reinhard|filmic", hide_possible_values = true, help_heading = "Picture")]
+    pub tone: Option<ToneName>,
+
+    /// Brightens by so many stops: 1 doubles the light, -1 halves it
+    #[arg(long, value_name = "STOPS", value_parser = exposure, allow_negative_numbers = true)]
+    #[arg(help_heading = "Picture")]
+    pub exposure: Option<f32>,
+
+    /// Bits of each colour in a PNG
+    #[arg(long, value_name = "8|16", value_parser = bits, help_heading = "Picture")]
+    pub bits: Option<Bits>,
+
+    /// Depth, normals and object numbers as layers of an .exr file
+    #[arg(long, help_heading = "Picture")]
+    pub layers: bool,
+
+    /// Depth of the deepest ray; a camera ray has 1
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(help_heading = "Rendering")]
+    pub depth: Option<u32>,
+
+    /// Antialiasing; N is rays in every pixel
+    #[arg(long, value_name = "none|adaptive|N", value_parser = antialiasing, help_heading = "Rendering")]
+    pub aa: Option<Antialiasing>,
+
+    /// What blocks light; `filtered`: glass lets some through
+    #[arg(long, value_name = "filtered|opaque|none", hide_possible_values = true, help_heading = "Rendering")]
+    pub shadows: Option<ShadowsName>,
+
+    /// Least share of its pixel for a ray to be followed
+    #[arg(long, value_name = "SHARE", value_parser = share, help_heading = "Rendering")]
+    pub min_weight: Option<f32>,
+
+    /// Bands of wavelengths that dispersive glass splits
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
+    #[arg(help_heading = "Rendering")]
+    pub bands: Option<u32>,
+
+    /// Threads [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
+    #[arg(help_heading = "Rendering")]
+    pub threads: Option<usize>,
+
+    /// Edge of the squares that threads work on
+    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..=65536))]
+    #[arg(help_heading = "Rendering")]
+    pub tile: Option<u32>,
+
+    /// Show the picture in the terminal; without -o no file is written
+    #[arg(long, conflicts_with = "json", help_heading = "Reports")]
+    pub preview: bool,
+
+    /// Print times and counts as one JSON object on standard output
+    #[arg(long, help_heading = "Reports")]
+    pub json: bool,
+
+    /// No progress and no closing line; warnings and errors only
+    #[arg(short, long, help_heading = "Reports")]
+    pub quiet: bool,
+}
+
+/// `snell scenes`.
+#[derive(Args, Debug)]
+pub struct ScenesArguments {
+    /// The scene to print; without it all are listed, name and title
+    pub name: Option<String>,
+
+    /// Write the scene and its pictures into this folder, to edit and render them there
+    #[arg(long, value_name = "FOLDER", requires = "name")]
+    pub extract: Option<PathBuf>,
+}
+
+/// `snell check`.
+#[derive(Args, Debug)]
+pub struct CheckArguments {
+    /// Scenes, meshes or names of built-in scenes
+    #[arg(required = true, value_name = "SCENE")]
+    pub scenes: Vec<String>,
+}
+
+// The values have no descriptions here, which `--help` would list at length.
+
+/// Names of `--preset`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Preset {
+    Spd,
+}
+
+/// Names of `--tone`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ToneName {
+    None,
+    Reinhard,
+    Filmic,
+}
+
+impl From<ToneName> for Tone {
+    fn from(name: ToneName) -> Self {
+        match name {
+            ToneName::None => Self::None,
+            ToneName::Reinhard => Self::Reinhard,
+            ToneName::Filmic => Self::Filmic,
+        }
+    }
+}
+
+/// Names of `--shadows`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ShadowsName {
+    Filtered,
+    Opaque,
+    None,
+}
+
+impl From<ShadowsName> for Shadows {
+    fn from(name: ShadowsName) -> Self {
+        match name {
+            ShadowsName::Filtered => Self::Filtered,
+            ShadowsName::Opaque => Self::Opaque,
+            ShadowsName::None => Self::None,
+        }
+    }
+}
+
+/// Values of `--bits`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bits {
+    /// 256 steps.
+    Eight,
+    /// 65536 steps.
+    Sixteen,
+}
+
+fn bits(text: &str) -> Result<Bits, String> {
+    match text {
+        "8" => Ok(Bits::Eight),
+        "16" => Ok(Bits::Sixteen),
+        _ => Err("a PNG has 8 or 16".to_owned()),
+    }
+}
+
+fn antialiasing(text: &str) -> Result<Antialiasing, String> {
+    match text {
+        "none" => Ok(Antialiasing::None),
+        "adaptive" => Ok(Antialiasing::Adaptive),
+        _ => match text.parse() {
+            Ok(rays @ 1..=65536) => Ok(Antialiasing::Samples(rays)),
+            _ => Err("write `none`, `adaptive`, or the number of rays for every pixel, 1 to 65536".to_owned()),
+        },
+    }
+}
+
+fn exposure(text: &str) -> Result<f32, String> {
+    number_in(text, -32.0, 32.0)
+}
+
+fn share(text: &str) -> Result<f32, String> {
+    number_in(text, 0.0, 1.0)
+}
+
+fn number_in(text: &str, least: f32, most: f32) -> Result<f32, String> {
+    match text.parse() {
+        Ok(value) if (least..=most).contains(&value) => Ok(value),
+        _ => Err(format!("a number from {least} to {most} is needed")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    fn render(line: &str) -> Result<RenderArguments, clap::Error> {
+        Arguments::try_parse_from(format!("snell render {line}").split_whitespace()).map(|arguments| {
+            let Command::Render(arguments) = arguments.command else { panic!("no render command") };
+            *arguments
+        })
+    }
+
+    #[test]
+    fn the_model_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn values_mean_what_they_say() {
+        let arguments = render("a.toml --aa 16 --exposure -1.5 --bits 16 --min-weight 0 --shadows none").unwrap();
+        assert_eq!(arguments.aa, Some(Antialiasing::Samples(16)));
+        assert_eq!(arguments.exposure, Some(-1.5));
+        assert_eq!(arguments.bits, Some(Bits::Sixteen));
+        assert_eq!(arguments.min_weight, Some(0.0));
+        assert_eq!(arguments.shadows.map(Shadows::from), Some(Shadows::None));
+        assert_eq!(render("--aa none").unwrap().aa, Some(Antialiasing::None));
+    }
+
+    #[test]
+    fn values_out_of_range_are_refused() {
+        for line in [
+            "--width 0",
+            "--width 65537",
+            "--depth 0",
+            "--aa 0",
+            "--aa some",
+            "--exposure nan",
+            "--exposure 1e9",
+            "--min-weight -1",
+            "--min-weight 2",
+            "--bits 12",
+            "--threads 0",
+            "--tile 0",
+            "--json --preview",
+            "--shadows soft",
+        ] {
+            assert!(render(line).is_err(), "{line}");
+        }
+    }
+}

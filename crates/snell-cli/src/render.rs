@@ -1,0 +1,166 @@
+//! `snell render`: from the scene's name to the picture, one step after the other.
+
+use std::time::Duration;
+
+use snell::compile::CompiledScene;
+use snell::render::{RenderSettings, Rendering, render};
+use snell::scene::reader::nff;
+use snell::scene::{Diagnostic, Diagnostics, Scene};
+
+use crate::arguments::{Preset, RenderArguments};
+use crate::assets::FileAssets;
+use crate::builtin;
+use crate::console::{say, write_stdout};
+use crate::diagnostics;
+use crate::failure::{FINE, Failure};
+use crate::interrupt::Interrupt;
+use crate::load::Place;
+use crate::output::Target;
+use crate::preview::{self, Kind};
+use crate::progress::RenderProgress;
+use crate::settings;
+use crate::statistics::{Report, Stopwatch, Times, advice};
+
+/// Renders as the command line says, and returns the exit code.
+pub fn run(arguments: &RenderArguments, mut watch: Stopwatch) -> Result<u8, Failure> {
+    // All that can be refused is refused before the work.
+    let place = Place::find(arguments.scene.as_deref().unwrap_or(builtin::DEFAULT))?;
+    let target = Target::new(arguments, &place.stem())?;
+    let preview = if arguments.preview { Some(Kind::of_stdout()?) } else { None };
+    target.check()?;
+    start_threads(arguments.threads)?;
+
+    let assets = FileAssets::default();
+    let (scene, mut told) = read(arguments, &place, &assets)?;
+    target.spares(&assets)?;
+    let load = watch.lap();
+
+    let compiled = compile(&scene, &mut told)?;
+    let settings = render_settings(arguments, &scene);
+    drop(scene);
+    diagnostics::print(&told);
+    let build = watch.lap();
+
+    let interrupt = Interrupt::listen()
+        .map_err(|error| Failure::input(Diagnostic::error(format!("signals cannot be listened to: {error}"))))?;
+    let progress = RenderProgress::start(interrupt.clone(), !arguments.quiet);
+    let rendering = render(&compiled, &settings, &progress)
+        .map_err(|error| Failure::input(Diagnostic::error(error.to_string())))?;
+    let covered = progress.percent_covered();
+    drop(progress);
+    let render = watch.lap();
+
+    target.write(&rendering, &settings)?;
+    if let Some(kind) = preview {
+        write_stdout(preview::text(kind, &rendering.image, &settings)?.as_bytes())?;
+    }
+    let write = watch.lap();
+
+    let counted = Diagnostics { list: advice(&rendering.statistics, &settings), ..Diagnostics::default() };
+    diagnostics::print(&counted);
+    let times = Times { load, build, render, write, total: watch.total() };
+    if !arguments.quiet {
+        say_closing_line(arguments, &target, &rendering, times.total, covered);
+    }
+    if arguments.json {
+        told.list.extend(counted.list);
+        let report = Report {
+            scene: place.name(),
+            output: target.name(),
+            settings: &settings,
+            times,
+            statistics: &rendering.statistics,
+            size: compiled.size(),
+            threads: rayon::current_num_threads(),
+            complete: rendering.complete,
+            warnings: told.list.iter().map(|one| diagnostics::one_line(one, &told.sources)).collect(),
+        };
+        write_stdout(format!("{:#}\n", report.json()).as_bytes())?;
+    }
+    Ok(interrupt.code().unwrap_or(FINE))
+}
+
+/// One pool for all that runs in parallel, where a number of threads is asked for; else it is made when first needed.
+fn start_threads(threads: Option<usize>) -> Result<(), Failure> {
+    let Some(threads) = threads else { return Ok(()) };
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build_global()
+        .map_err(|error| Failure::input(Diagnostic::error(format!("{threads} threads cannot be started: {error}"))))
+}
+
+/// The scene with the command line's word over its settings, and its warnings.
+fn read(arguments: &RenderArguments, place: &Place, assets: &FileAssets) -> Result<(Scene, Diagnostics), Failure> {
+    let (scene, told) = place.read(&arguments.set, assets)?;
+    let Some(mut scene) = scene else { return Err(Failure::scene(told)) };
+    if arguments.preset == Some(Preset::Spd) {
+        nff::spd_rules(&mut scene);
+    }
+    settings::apply(arguments, &mut scene.settings)?;
+    Ok((scene, told))
+}
+
+/// Compiles, and adds the engine's warnings to those of the reader.
+fn compile(scene: &Scene, told: &mut Diagnostics) -> Result<CompiledScene, Failure> {
+    match CompiledScene::build(scene) {
+        Ok(mut compiled) => {
+            told.list.append(&mut compiled.warnings);
+            Ok(compiled)
+        }
+        Err(error) => {
+            told.list.extend(error.diagnostics);
+            Err(Failure::scene(std::mem::take(told)))
+        }
+    }
+}
+
+fn render_settings(arguments: &RenderArguments, scene: &Scene) -> RenderSettings {
+    let defaults = RenderSettings::from(&scene.settings);
+    RenderSettings { tile_size: arguments.tile.unwrap_or(defaults.tile_size), layers: arguments.layers, ..defaults }
+}
+
+/// `wrote x.png (1024x768, 0.21 s)`.
+fn say_closing_line(
+    arguments: &RenderArguments,
+    target: &Target,
+    rendering: &Rendering,
+    total: Duration,
+    covered: u64,
+) {
+    let (width, height) = rendering.image.size();
+    let what = match target {
+        Target::Nowhere => "rendered".to_owned(),
+        Target::Stdout(_) => "wrote a PNG to standard output".to_owned(),
+        Target::File(path, _) => format!("wrote {}", path.display()),
+    };
+    let end = match (rendering.complete, covered) {
+        (true, _) => String::new(),
+        (false, 100) => ", interrupted: its edges are not smooth everywhere".to_owned(),
+        (false, covered) => format!(", interrupted: {} % of it is black", 100 - covered),
+    };
+    say(format_args!("{what} ({width}x{height}, {}){end}", seconds_text(total)));
+    if arguments.scene.is_none() && arguments.output.is_none() && rendering.complete {
+        say(format_args!("This is the built-in scene {}; `snell scenes` lists the others.", builtin::DEFAULT));
+    }
+}
+
+/// Seconds in about three digits.
+fn seconds_text(duration: Duration) -> String {
+    match duration.as_secs_f64() {
+        seconds if seconds < 9.995 => format!("{seconds:.2} s"),
+        seconds if seconds < 99.95 => format!("{seconds:.1} s"),
+        seconds => format!("{seconds:.0} s"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn seconds_are_short() {
+        for (seconds, text) in [(0.2149, "0.21 s"), (9.999, "10.0 s"), (12.34, "12.3 s"), (1234.5, "1234 s")] {
+            assert_eq!(seconds_text(Duration::from_secs_f64(seconds)), text);
+        }
+    }
+}

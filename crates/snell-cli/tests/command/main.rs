@@ -1,0 +1,12 @@
+//! The built `snell` command, run in temporary folders as a user runs it.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod mistakes;
+mod output;
+mod render;
+mod scenes;
+#[cfg(unix)]
+mod signals;
+mod streams;
+mod support;
