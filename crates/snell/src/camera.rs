@@ -80,7 +80,12 @@ impl Camera {
     /// let back = camera.project(ray.at(3.0)).unwrap();
     /// assert!((back.x - 123.25).abs() < 1e-9 && (back.y - 45.5).abs() < 1e-9);
     /// ```
-    pub fn new(description: &scene::Camera, width: u32, height: u32, grid: scene::PixelGrid) -> Result<Self, CameraError> {
+    pub fn new(
+        description: &scene::Camera,
+        width: u32,
+        height: u32,
+        grid: scene::PixelGrid,
+    ) -> Result<Self, CameraError> {
         use CameraError::{DegenerateOrientation, EmptyWindow};
         let back = (-description.gaze).try_normalize().ok_or(DegenerateOrientation)?;
         let up = description.up.try_normalize().ok_or(DegenerateOrientation)?;
@@ -115,8 +120,7 @@ impl Camera {
             }
             scene::Frame::PerspectiveWindow { left, right, bottom, top, near, far } => {
                 let unit = -1.0 / near;
-                let window =
-                    Window { left: left * unit, right: right * unit, bottom: bottom * unit, top: top * unit };
+                let window = Window { left: left * unit, right: right * unit, bottom: bottom * unit, top: top * unit };
                 (Projection::Perspective, window, near, far)
             }
             scene::Frame::OrthographicWindow { left, right, bottom, top, near, far } => {
@@ -311,10 +315,9 @@ mod tests {
 
     #[test]
     fn a_far_plane_is_found_along_each_ray() {
-        let frame =
-            Frame::PerspectiveWindow { left: -1.0, right: 1.0, bottom: -1.0, top: 1.0, near: -1.0, far: -10.0 };
-        let camera =
-            Camera::new(&scene::Camera { frame, ..scene::Camera::default() }, 8, 8, PixelGrid::Centers).expect("camera");
+        let frame = Frame::PerspectiveWindow { left: -1.0, right: 1.0, bottom: -1.0, top: 1.0, near: -1.0, far: -10.0 };
+        let camera = Camera::new(&scene::Camera { frame, ..scene::Camera::default() }, 8, 8, PixelGrid::Centers)
+            .expect("camera");
         for (x, y) in [(4.0, 4.0), (0.0, 0.0), (8.0, 1.0)] {
             let ray = camera.generate_ray(x, y);
             let end = camera.project(ray.at(camera.far_distance(&ray))).expect("before the camera");

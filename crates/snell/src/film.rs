@@ -93,7 +93,9 @@ impl Film {
 
     /// Scene-linear colours: each pixel the mean of its samples.
     pub fn develop(&self) -> Image<Rgb> {
-        Image::from_fn(self.width, self.height, |x, y| self.pixels[y as usize * self.width as usize + x as usize].mean())
+        Image::from_fn(self.width, self.height, |x, y| {
+            self.pixels[y as usize * self.width as usize + x as usize].mean()
+        })
     }
 }
 

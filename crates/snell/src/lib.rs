@@ -14,6 +14,8 @@ pub mod observe;
 pub mod optics;
 pub mod render;
 pub mod shape;
+pub mod statistics;
+pub mod task;
 pub mod texture;
 pub mod trace;
 

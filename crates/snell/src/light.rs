@@ -51,11 +51,7 @@ impl Light {
     pub fn illuminate(&self, point: Point3) -> Option<Illumination> {
         let position = match &self.place {
             Place::Directional { to_light } => {
-                return Some(Illumination {
-                    to_light: *to_light,
-                    distance: f64::INFINITY,
-                    irradiance: self.intensity,
-                });
+                return Some(Illumination { to_light: *to_light, distance: f64::INFINITY, irradiance: self.intensity });
             }
             Place::Point { position } | Place::Spot { position, .. } => *position,
         };

@@ -149,11 +149,8 @@ impl Material {
         if let Some(dielectric) = &material.dielectric {
             compiled.base.interface =
                 Some(Interface { fresnel: dielectric.fresnel, reflect: Rgb::BLACK, transmit: Rgb::BLACK });
-            compiled.body = Some(Body {
-                ior: dielectric.ior.clone(),
-                medium: dielectric.medium,
-                priority: dielectric.priority,
-            });
+            compiled.body =
+                Some(Body { ior: dielectric.ior.clone(), medium: dielectric.medium, priority: dielectric.priority });
             compiled.fill(Slot::Reflect, dielectric.reflect, textures);
             compiled.fill(Slot::Transmit, dielectric.transmit, textures);
         }
@@ -235,8 +232,7 @@ mod tests {
 
     #[test]
     fn light_is_reflected_as_the_lecture_says() {
-        let bsdf =
-            Bsdf { diffuse: Rgb::gray(0.5), specular: Rgb::gray(0.25), shininess: 2.0, ..Bsdf::BLACK };
+        let bsdf = Bsdf { diffuse: Rgb::gray(0.5), specular: Rgb::gray(0.25), shininess: 2.0, ..Bsdf::BLACK };
         let normal = Vector3::Y;
         let wo = Vector3::new(1.0, 1.0, 0.0).normalize();
         let mirrored = Vector3::new(-1.0, 1.0, 0.0).normalize();

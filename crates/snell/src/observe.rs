@@ -6,33 +6,7 @@
 use snell_math::Rgb;
 
 use crate::interaction::SurfaceInteraction;
-use crate::trace::{RayTask, ShadowQuestion};
-
-/// A term of the lecture's `shade`: what a share of a sample came from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Term {
-    /// The ray hit nothing.
-    Background,
-    /// Light that the surface gives off.
-    Emission,
-    /// The ambient term.
-    Ambient,
-    /// The diffuse lobe, lit by the light of that number.
-    Diffuse(u32),
-    /// The highlight, lit by the light of that number.
-    Specular(u32),
-    /// Light scattered towards the viewer inside a milky body.
-    Scattering(u32),
-}
-
-/// Why a ray was not followed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Cut {
-    /// It would have been deeper than allowed.
-    Depth,
-    /// It would have weighed less than allowed.
-    Weight,
-}
+use crate::task::{Cut, RayTask, ShadowQuestion, Term};
 
 /// Sees everything the tracing loop does, in order. All methods do nothing by default.
 pub trait Observer {

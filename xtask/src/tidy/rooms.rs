@@ -1,6 +1,7 @@
 //! Which room of the engine (`crates/snell/src/ROOM`) may know which.
 //!
-//! The leaves know only mathematics, the scene and images; `accel` <- `compile` <- `integrator` <- `trace` <- `render`.
+//! The leaves know only mathematics, the scene and images; `accel` <- `geometry` <- `compile` <- `integrator` <- `trace` <-
+//! `render`. `task` is what travels between them.
 //! Tests may look anywhere. Change this table on purpose: it is the architecture.
 
 use super::paths::paths;
@@ -26,28 +27,51 @@ const ROOMS: &[Room] = &[
     Room { name: "csg", may_use: &["shape"] },
     Room { name: "optics", may_use: &[] },
     Room { name: "texture", may_use: &[] },
-    Room { name: "medium", may_use: &[] },
-    Room { name: "sampler", may_use: &[] },
-    Room { name: "filter", may_use: &[] },
-    Room { name: "bsdf", may_use: &["optics"] },
-    Room { name: "material", may_use: &["optics", "texture", "bsdf"] },
     Room { name: "light", may_use: &[] },
     Room { name: "camera", may_use: &[] },
-    Room { name: "film", may_use: &["filter"] },
-    Room { name: "viewing", may_use: &["camera"] },
+    Room { name: "film", may_use: &[] },
+    Room { name: "statistics", may_use: &[] },
+    // Patterns are read a little inside the surface, by as much as textures say.
+    Room { name: "interaction", may_use: &["texture"] },
+    Room { name: "material", may_use: &["texture", "interaction"] },
+    Room { name: "task", may_use: &["interaction"] },
+    Room { name: "observe", may_use: &["interaction", "task"] },
+    Room { name: "geometry", may_use: &["accel", "shape", "csg", "texture", "interaction", "task"] },
     Room {
         name: "compile",
-        may_use: &["accel", "shape", "csg", "optics", "texture", "medium", "material", "light", "camera"],
+        may_use: &[
+            "accel",
+            "shape",
+            "csg",
+            "texture",
+            "light",
+            "camera",
+            "interaction",
+            "material",
+            "task",
+            "geometry",
+        ],
     },
-    Room { name: "observe", may_use: &["compile"] },
     Room {
         name: "integrator",
-        may_use: &["shape", "optics", "medium", "sampler", "bsdf", "material", "light", "compile", "observe"],
+        may_use: &[
+            "optics",
+            "texture",
+            "light",
+            "camera",
+            "statistics",
+            "interaction",
+            "material",
+            "task",
+            "observe",
+            "geometry",
+            "compile",
+        ],
     },
-    Room { name: "trace", may_use: &["accel", "shape", "csg", "sampler", "compile", "observe", "integrator"] },
+    Room { name: "trace", may_use: &["optics", "statistics", "task", "observe", "geometry", "compile", "integrator"] },
     Room {
         name: "render",
-        may_use: &["camera", "film", "filter", "sampler", "compile", "observe", "integrator", "trace"],
+        may_use: &["camera", "film", "statistics", "observe", "geometry", "compile", "integrator", "trace"],
     },
 ];
 

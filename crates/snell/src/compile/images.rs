@@ -26,7 +26,8 @@ pub fn decode_all(assets: &Table<ImageAsset>, diagnostics: &mut Vec<Diagnostic>)
 }
 
 fn decode(asset: &ImageAsset) -> Result<TextureImage, String> {
-    let picture = snell_image::decode(&asset.bytes, &snell_image::Limits::default()).map_err(|error| error.to_string())?;
+    let picture =
+        snell_image::decode(&asset.bytes, &snell_image::Limits::default()).map_err(|error| error.to_string())?;
     let (width, height) = picture.image.size();
     TextureImage::new(width, height, picture.image.into_pixels()).map_err(|error| error.to_string())
 }

@@ -12,8 +12,8 @@ use crate::geometry::{Geometry, Hit, QueryScratch};
 use crate::interaction::SurfaceInteraction;
 use crate::light::Light;
 use crate::material::Material;
+use crate::task::{Inside, MediumStack, MediumStacks};
 use crate::texture::{Background, Textures};
-use crate::trace::{Inside, MediumStack, MediumStacks};
 
 /// A scene ready to be traced: never changed, shared by all threads.
 #[derive(Debug)]

@@ -160,7 +160,8 @@ impl Compiler<'_> {
         let open_edges = compiled.boundary_edges();
         if !is_opaque && open_edges > 0 {
             let name = object.name.as_deref().unwrap_or(&description.name);
-            let message = format!("the transparent mesh \"{name}\" is not closed: {open_edges} of its edges have one side only");
+            let message =
+                format!("the transparent mesh \"{name}\" is not closed: {open_edges} of its edges have one side only");
             self.diagnostics.push(
                 Diagnostic::warning(message)
                     .at_optional(object.span.clone(), "this mesh")
@@ -275,7 +276,8 @@ impl Compiler<'_> {
             for j in 0..rows {
                 for i in 0..columns {
                     self.next_object = first_object;
-                    let offset = grid.step[0] * f64::from(i) + grid.step[1] * f64::from(j) + grid.step[2] * f64::from(k);
+                    let offset =
+                        grid.step[0] * f64::from(i) + grid.step[1] * f64::from(j) + grid.step[2] * f64::from(k);
                     let space_from_parent = context.space_from_parent * Transform::translate(offset);
                     self.add(&grid.of, Context { space_from_parent, ..context }, parts);
                     if self.primitives > MAX_PRIMITIVES {

@@ -37,8 +37,7 @@ impl Geometry {
                 })
             }
             primitive => {
-                let mut keep =
-                    |local: LocalHit| hits.push(Hit { t: local.t(), primitive: index, inner: NONE, local });
+                let mut keep = |local: LocalHit| hits.push(Hit { t: local.t(), primitive: index, inner: NONE, local });
                 self.blocks(&self.world, index, primitive, NONE, ray, distance, scratch, &mut keep)
             }
         })

@@ -18,7 +18,7 @@ use crate::csg::{CsgHit, CsgScratch, CsgSolid};
 use crate::interaction::{SolidId, SurfaceInteraction};
 use crate::shape::ShapeHit;
 use crate::shape::triangle_mesh::{MeshHit, TriangleMesh};
-use crate::trace::RayTask;
+use crate::task::RayTask;
 
 /// All geometry of a compiled scene; never written to after it was built.
 #[derive(Debug)]
@@ -156,7 +156,8 @@ impl Geometry {
         if hit.inner == NONE {
             return self.interaction_in(&self.world, ray, hit, hit.primitive, NONE);
         }
-        let Primitive::Instance { prototype, placement, material } = &self.world.primitives[hit.primitive as usize] else {
+        let Primitive::Instance { prototype, placement, material } = &self.world.primitives[hit.primitive as usize]
+        else {
             unreachable!("only hits of instances have an inner primitive");
         };
         let placement = &self.world.placements[*placement as usize];

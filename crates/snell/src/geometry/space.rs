@@ -137,9 +137,8 @@ impl Space {
         if first_alone == 0 {
             return nearest;
         }
-        let bounded = self
-            .bvh
-            .closest(ray, limit, |index, limit| test(index, &self.primitives[index as usize], limit.next_up()));
+        let bounded =
+            self.bvh.closest(ray, limit, |index, limit| test(index, &self.primitives[index as usize], limit.next_up()));
         bounded.or(nearest)
     }
 

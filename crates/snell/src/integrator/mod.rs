@@ -1,13 +1,15 @@
 //! What happens where a ray meets the scene: one `shade`, one file, one algorithm.
 
-pub mod scattering;
-pub mod whitted;
+mod scattering;
+mod sink;
+mod whitted;
 
 use crate::compile::CompiledScene;
 use crate::geometry::Hit;
 use crate::observe::Observer;
-use crate::trace::{RayTask, Sink};
+use crate::task::RayTask;
 
+pub use sink::{Rules, Sink, Spawn};
 pub use whitted::Whitted;
 
 /// An algorithm over the loop of [`crate::trace`]: the one open door of the engine, chosen once for a picture.

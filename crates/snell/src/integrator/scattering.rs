@@ -16,10 +16,11 @@
 use snell_math::{Rgb, portable};
 use snell_scene::scene::Medium;
 
+use super::Sink;
 use crate::compile::CompiledScene;
-use crate::observe::{Observer, Term};
+use crate::observe::Observer;
 use crate::optics::{beer_lambert, henyey_greenstein};
-use crate::trace::{RayTask, ShadowQuestion, Sink};
+use crate::task::{RayTask, ShadowQuestion, Term};
 
 /// Points along a ray's way through a body.
 const POINTS: u32 = 8;

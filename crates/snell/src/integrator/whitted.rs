@@ -7,16 +7,16 @@
 use snell_math::spectrum::Bands;
 use snell_math::{Normal3, Rgb, Vector3};
 
-use super::{Integrator, scattering};
+use super::{Integrator, Sink, Spawn, scattering};
 use crate::camera::{Camera, Projection, Window};
 use crate::compile::CompiledScene;
 use crate::geometry::Hit;
 use crate::interaction::SurfaceInteraction;
 use crate::material::{Bsdf, Interface};
-use crate::observe::{Observer, Term};
+use crate::observe::Observer;
 use crate::optics::{beer_lambert, fresnel_dielectric, reflect, refract};
+use crate::task::{Band, Crossing, Inside, RayKind, RayTask, ShadowQuestion, Term};
 use crate::texture::ViewProjection;
-use crate::trace::{Band, Crossing, Inside, RayKind, RayTask, ShadowQuestion, Sink, Spawn};
 
 /// Recursive ray tracing over lights without extent.
 #[derive(Clone, Debug)]
@@ -78,8 +78,7 @@ impl Integrator for Whitted {
 
         let leaving = interaction.is_outward(task.ray.direction);
         let crossing = material.body.as_ref().map(|body| {
-            let inside =
-                Inside { solid: interaction.solid, material: interaction.material, priority: body.priority };
+            let inside = Inside { solid: interaction.solid, material: interaction.material, priority: body.priority };
             out.media.cross(task.media, inside, leaving)
         });
         // A boundary that a body of higher priority covers is not there.

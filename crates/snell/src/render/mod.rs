@@ -20,11 +20,12 @@ pub use settings::RenderSettings;
 use crate::camera::{Camera, CameraError};
 use crate::compile::CompiledScene;
 use crate::film::{Film, PixelSum};
-use crate::integrator::{Integrator, Whitted};
+use crate::integrator::{Integrator, Rules, Whitted};
 use crate::observe::{NoObserver, RayTree};
 use crate::render::adaptive::Contrast;
 use crate::render::layers::FirstHit;
-use crate::trace::{Rules, Scratch, Statistics, Tracer};
+use crate::statistics::Statistics;
+use crate::trace::{Scratch, Tracer};
 
 /// Told how far rendering is, and asked whether to go on. Called from several threads.
 pub trait Progress: Sync {
@@ -71,25 +72,26 @@ pub struct Rendering {
 /// ```
 /// use snell::compile::CompiledScene;
 /// use snell::render::{NoProgress, RenderSettings, render};
-/// use snell::scene::scene::{Object, Scene, Shape};
+/// use snell::scene::scene::{Antialiasing, Object, Scene, Shape};
 /// use snell::math::{Point3, Rgb};
 ///
 /// let mut scene = Scene { ambient: Rgb::WHITE, ..Scene::default() };
 /// scene.objects.push(Object::shape(Shape::Sphere { center: Point3::ORIGIN, radius: 1.0 }));
 /// let compiled = CompiledScene::build(&scene).unwrap();
-/// let settings = RenderSettings { width: 15, height: 7, ..RenderSettings::from(&scene.settings) };
+/// let antialiasing = Antialiasing::None;
+/// let settings = RenderSettings { width: 15, height: 7, antialiasing, ..RenderSettings::from(&scene.settings) };
 /// let picture = render(&compiled, &settings, &NoProgress).unwrap().image;
 /// let rows: Vec<String> = (0..7)
-///     .map(|y| (0..15).map(|x| if picture.pixel(x, y).r > 0.35 { '#' } else { '.' }).collect())
+///     .map(|y| (0..15).map(|x| if picture.get(x, y).is_some_and(|color| color.r > 0.35) { '#' } else { '.' }).collect())
 ///     .collect();
 /// assert_eq!(rows, [
-///     "...............",
-///     "......###......",
 ///     ".....#####.....",
+///     "....#######....",
+///     "...#########...",
+///     "...#########...",
+///     "...#########...",
+///     "....#######....",
 ///     ".....#####.....",
-///     ".....#####.....",
-///     "......###......",
-///     "...............",
 /// ]);
 /// ```
 pub fn render(
@@ -197,14 +199,13 @@ impl<I: Integrator> Job<'_, I> {
             let rays = pixels
                 .iter()
                 .flat_map(|&pixel| samples.clone().map(move |sample| self.camera_ray(pixel as usize, sample)));
-            let colors =
-                self.tracer().trace(rays, scratch, &mut statistics, &mut NoObserver, |number, ray, hit| {
-                    let far = self.camera.far_distance(ray);
-                    *hit = hit.filter(|hit| hit.t <= far);
-                    if self.settings.layers && samples.start == 0 && number % per_pixel == 0 {
-                        first_hits.push(FirstHit::new(self.scene, self.camera, ray, hit.as_ref()));
-                    }
-                });
+            let colors = self.tracer().trace(rays, scratch, &mut statistics, &mut NoObserver, |number, ray, hit| {
+                let far = self.camera.far_distance(ray);
+                *hit = hit.filter(|hit| hit.t <= far);
+                if self.settings.layers && samples.start == 0 && number % per_pixel == 0 {
+                    first_hits.push(FirstHit::new(self.scene, self.camera, ray, hit.as_ref()));
+                }
+            });
             let mut gathered = lock(gathered);
             for (&pixel, colors) in pixels.iter().zip(colors.chunks(per_pixel)) {
                 let mut sum = PixelSum::default();

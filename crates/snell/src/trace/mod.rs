@@ -9,37 +9,16 @@
 //! The order of additions to a sample depends only on the sample: its rays keep their order in every queue, whatever other
 //! samples share the tile. So a picture's bits do not depend on tiles or threads.
 
-mod media;
 mod shadow;
-mod statistics;
-mod task;
 
 use snell_math::{Ray, Rgb};
-use snell_scene::scene::Shadows;
-
-pub use media::{Crossing, Inside, MediumStack, MediumStacks};
-pub use statistics::Statistics;
-pub use task::{Band, RayKind, RayTask, ShadowQuestion};
 
 use crate::compile::CompiledScene;
 use crate::geometry::{Hit, QueryScratch};
-use crate::integrator::Integrator;
-use crate::observe::{Cut, Observer, Term};
-
-/// The rules of the recursion.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rules {
-    /// The depth of the deepest ray; camera rays have depth 1.
-    pub depth: u16,
-    /// Rays whose throughput is below this in every component are not followed.
-    pub min_weight: f32,
-    /// What blocks light.
-    pub shadows: Shadows,
-}
-
-/// How many boundaries without effect a ray may go through before it counts as lost: a guard against scenes that are
-/// infinitely thin, not a limit that a real one meets.
-pub const MAX_PASSES: u16 = 4096;
+use crate::integrator::{Integrator, Rules, Sink};
+use crate::observe::Observer;
+use crate::statistics::Statistics;
+use crate::task::{MediumStacks, RayKind, RayTask, ShadowQuestion};
 
 /// The queues and buffers of one worker, reused from tile to tile so that rays cost no allocation.
 #[derive(Debug, Default)]
@@ -52,118 +31,6 @@ pub struct Scratch {
     media: MediumStacks,
     shadow: shadow::ShadowScratch,
     query: QueryScratch,
-}
-
-/// What `shade` gives its results to: terms to the sample, questions to the lights, rays to the next generation.
-#[derive(Debug)]
-pub struct Sink<'a, O> {
-    sums: &'a mut [Rgb],
-    questions: &'a mut Vec<ShadowQuestion>,
-    next: &'a mut Vec<RayTask>,
-    /// The stacks of transparent bodies that tasks refer to.
-    pub media: &'a mut MediumStacks,
-    /// What is counted.
-    pub statistics: &'a mut Statistics,
-    observer: &'a mut O,
-    rules: Rules,
-    next_id: &'a mut u32,
-}
-
-/// A ray to be spawned by a surface; see [`Sink::spawn`].
-#[derive(Clone, Copy, Debug)]
-pub struct Spawn {
-    /// Reflected or refracted.
-    pub kind: RayKind,
-    /// The ray.
-    pub ray: Ray,
-    /// The share of the parent's throughput that it carries.
-    pub weight: Rgb,
-    /// The bodies it travels in.
-    pub media: MediumStack,
-    /// The band it carries.
-    pub band: Option<Band>,
-}
-
-impl<O: Observer> Sink<'_, O> {
-    /// Adds a term to the ray's sample: `radiance` as seen along the ray, scaled here by its throughput.
-    #[inline]
-    pub fn add(&mut self, task: &RayTask, term: Term, radiance: Rgb) {
-        let share = task.throughput * radiance;
-        self.sums[task.sample as usize] += share;
-        self.observer.term(task.id, term, share);
-    }
-
-    /// Tells the observer what the ray met.
-    #[inline]
-    pub fn met(&mut self, task: &RayTask, interaction: Option<&crate::interaction::SurfaceInteraction>) {
-        self.observer.hit(task, interaction);
-    }
-
-    /// Asks how much of a light arrives; the answer is added to the sample after the generation.
-    #[inline]
-    pub fn ask(&mut self, question: ShadowQuestion) {
-        self.questions.push(question);
-    }
-
-    /// Counts a total internal reflection.
-    #[inline]
-    pub fn total_internal_reflection(&mut self, task: &RayTask) {
-        self.statistics.total_internal_reflections += 1;
-        self.observer.total_internal_reflection(task.id);
-    }
-
-    /// Adds a ray to the next generation, one deeper than its parent, unless the limits cut it.
-    #[inline]
-    pub fn spawn(&mut self, parent: &RayTask, spawn: Spawn) {
-        let throughput = parent.throughput * spawn.weight;
-        // A share that is nothing at all is no ray: an interface with a black coefficient spawns none.
-        if throughput.is_black() {
-            return;
-        }
-        let cut = if parent.depth >= self.rules.depth {
-            Some(Cut::Depth)
-        } else if throughput.max_abs() < self.rules.min_weight {
-            Some(Cut::Weight)
-        } else {
-            None
-        };
-        if let Some(cut) = cut {
-            self.cut(parent, cut, throughput);
-            return;
-        }
-        match spawn.kind {
-            RayKind::Reflected => self.statistics.reflected_rays += 1,
-            RayKind::Refracted => self.statistics.refracted_rays += 1,
-            RayKind::Camera => self.statistics.camera_rays += 1,
-        }
-        self.statistics.max_depth = self.statistics.max_depth.max(u32::from(parent.depth) + 1);
-        let Spawn { kind, ray, media, band, .. } = spawn;
-        let depth = parent.depth + 1;
-        self.push(RayTask { ray, throughput, media, depth, passes: 0, kind, band, ..*parent }, parent.id);
-    }
-
-    /// Lets a ray go on behind a boundary without effect, as the ray it was.
-    #[inline]
-    pub fn pass(&mut self, task: &RayTask, ray: Ray, media: MediumStack) {
-        if task.passes >= MAX_PASSES {
-            self.cut(task, Cut::Depth, task.throughput);
-            return;
-        }
-        self.push(RayTask { ray, media, passes: task.passes + 1, ..*task }, task.id);
-    }
-
-    fn push(&mut self, mut task: RayTask, parent: u32) {
-        task.id = *self.next_id;
-        task.parent = parent;
-        *self.next_id = self.next_id.wrapping_add(1);
-        self.observer.ray(&task);
-        self.next.push(task);
-    }
-
-    fn cut(&mut self, parent: &RayTask, why: Cut, weight: Rgb) {
-        self.statistics.add_cut_weight(weight);
-        self.observer.cut(parent.id, why, weight);
-    }
 }
 
 /// A scene, an algorithm and its rules: what camera rays are given to.

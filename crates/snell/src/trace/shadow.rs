@@ -8,12 +8,11 @@
 use snell_math::{Ray, Rgb};
 use snell_scene::scene::Shadows;
 
-use super::media::{Inside, MediumStacks};
-use super::statistics::Statistics;
-use super::task::ShadowQuestion;
 use crate::compile::CompiledScene;
 use crate::geometry::{Hit, QueryScratch};
 use crate::optics;
+use crate::statistics::Statistics;
+use crate::task::{Inside, MediumStacks, ShadowQuestion};
 
 /// Where the hits of one shadow ray are gathered.
 #[derive(Debug, Default)]
@@ -70,7 +69,8 @@ fn filter(
         from = hit.t;
         let interaction = scene.interaction(ray, hit);
         let material = &scene.materials[interaction.material as usize];
-        let (Some(body), Some(interface)) = (&material.body, material.bsdf(&scene.textures, &interaction).interface) else {
+        let (Some(body), Some(interface)) = (&material.body, material.bsdf(&scene.textures, &interaction).interface)
+        else {
             return Rgb::BLACK;
         };
         let inside = Inside { solid: interaction.solid, material: interaction.material, priority: body.priority };

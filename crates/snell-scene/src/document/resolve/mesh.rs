@@ -39,9 +39,8 @@ impl Resolver<'_> {
     /// out then.
     fn mesh_from_file(&mut self, named: &Located<String>, crease_angle: Option<f64>) -> Id<Mesh> {
         let said_before = self.diagnostics.list.len();
-        let file = self
-            .file(named)
-            .and_then(|(path, bytes)| reader::read_mesh(&path, &bytes, self.assets, self.diagnostics));
+        let file =
+            self.file(named).and_then(|(path, bytes)| reader::read_mesh(&path, &bytes, self.assets, self.diagnostics));
         // What is wrong inside the file is told with the place in the scene that names it.
         if let Some(span) = &named.span {
             for diagnostic in &mut self.diagnostics.list[said_before..] {

@@ -1,9 +1,10 @@
-//! The ray task: everything that is known of a ray before it is traced.
+//! What travels through the tracing loop: rays to be traced, questions to lights, and the names of what comes of them.
+
+mod media;
 
 use snell_math::{Ray, Rgb};
 
-use super::media::MediumStack;
-use crate::observe::Term;
+pub use media::{Crossing, Inside, MediumStack, MediumStacks};
 
 /// A ray to be traced, with its weight to a sample of a pixel. "Rays are tasks": the lecture's recursion is a list of these.
 #[derive(Clone, Copy, Debug)]
@@ -63,4 +64,30 @@ pub struct ShadowQuestion {
     pub media: MediumStack,
     /// The factor on the extinction of scattering media on the way: 1, but for the orders of multiple scattering.
     pub extinction_scale: f32,
+}
+
+/// A term of the lecture's `shade`: what a share of a sample came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Term {
+    /// The ray hit nothing.
+    Background,
+    /// Light that the surface gives off.
+    Emission,
+    /// The ambient term.
+    Ambient,
+    /// The diffuse lobe, lit by the light of that number.
+    Diffuse(u32),
+    /// The highlight, lit by the light of that number.
+    Specular(u32),
+    /// Light scattered towards the viewer inside a milky body.
+    Scattering(u32),
+}
+
+/// Why a ray was not followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cut {
+    /// It would have been deeper than allowed.
+    Depth,
+    /// It would have weighed less than allowed.
+    Weight,
 }
