@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use snell::compile::SceneSize;
 use snell::render::RenderSettings;
 use snell::scene::Diagnostic;
-use snell::trace::Statistics;
+use snell::statistics::Statistics;
 
 /// The share of the picture's light that may be cut off without a word.
 const TOLERATED_CUT: f64 = 0.01;
