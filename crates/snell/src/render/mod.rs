@@ -11,10 +11,9 @@ mod settings;
 use std::sync::Mutex;
 
 use rayon::prelude::*;
-use snell_image::Image;
+use snell_image::{Image, Layers};
 use snell_math::{Rgb, sampling};
 
-pub use layers::Layers;
 pub use settings::RenderSettings;
 
 use crate::camera::{Camera, CameraError};
@@ -23,7 +22,7 @@ use crate::film::{Film, PixelSum};
 use crate::integrator::{Integrator, Rules, Whitted};
 use crate::observe::{NoObserver, RayTree};
 use crate::render::adaptive::Contrast;
-use crate::render::layers::FirstHit;
+use crate::render::layers::{FirstHit, FirstHits};
 use crate::statistics::Statistics;
 use crate::trace::{Scratch, Tracer};
 
@@ -146,7 +145,7 @@ struct Job<'a, I> {
 struct Gathered {
     film: Film,
     contrast: Option<Contrast>,
-    layers: Option<Layers>,
+    first_hits: Option<FirstHits>,
     statistics: Statistics,
 }
 
@@ -157,7 +156,7 @@ impl<I: Integrator> Job<'_, I> {
         let gathered = Mutex::new(Gathered {
             film: Film::new(width, height),
             contrast: (passes.len() > 1).then(|| Contrast::new(width, height, self.settings)),
-            layers: self.settings.layers.then(|| Layers::new(width, height)),
+            first_hits: self.settings.layers.then(|| FirstHits::new(width, height)),
             statistics: Statistics::default(),
         });
         let mut complete = true;
@@ -178,8 +177,8 @@ impl<I: Integrator> Job<'_, I> {
                 break;
             }
         }
-        let Gathered { film, layers, statistics, .. } = gathered.into_inner().unwrap_or_else(|e| e.into_inner());
-        Rendering { image: film.develop(), layers, statistics, complete }
+        let Gathered { film, first_hits, statistics, .. } = gathered.into_inner().unwrap_or_else(|e| e.into_inner());
+        Rendering { image: film.develop(), layers: first_hits.map(FirstHits::into_layers), statistics, complete }
     }
 
     /// Takes the samples of a range of the sequence in each pixel of a tile.
@@ -196,6 +195,9 @@ impl<I: Integrator> Job<'_, I> {
         let mut first_hits: Vec<FirstHit> = Vec::new();
         // As many pixels at once as keep the queues in the caches.
         for pixels in tile.chunks((MAX_QUEUE / per_pixel).max(1)) {
+            if progress.is_cancelled() {
+                break;
+            }
             let rays = pixels
                 .iter()
                 .flat_map(|&pixel| samples.clone().map(move |sample| self.camera_ray(pixel as usize, sample)));
@@ -217,9 +219,9 @@ impl<I: Integrator> Job<'_, I> {
                     contrast.add(pixel as usize, colors);
                 }
             }
-            if let Some(layers) = &mut gathered.layers {
+            if let Some(all) = &mut gathered.first_hits {
                 for (&pixel, first) in pixels.iter().zip(first_hits.drain(..)) {
-                    layers.set(pixel as usize, first);
+                    all.set(pixel as usize, first);
                 }
             }
         }

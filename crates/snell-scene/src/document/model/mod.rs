@@ -138,7 +138,7 @@ pub struct Render {
     /// What blocks light.
     pub shadows: Shadows,
     /// Into how many bands of wavelength white light splits at glass whose index depends on the wavelength.
-    #[schemars(range(min = 1, max = 256))]
+    #[schemars(range(min = 1, max = 64))]
     pub bands: u32,
 }
 
