@@ -6,6 +6,7 @@
 
 use snell_math::spectrum::Bands;
 use snell_math::{Normal3, Rgb, Vector3};
+use snell_scene::scene::Medium;
 
 use super::{Integrator, Sink, Spawn, scattering};
 use crate::camera::{Camera, Projection, Window};
@@ -61,18 +62,24 @@ impl Whitted {
 
 impl Integrator for Whitted {
     fn shade<O: Observer>(&self, scene: &CompiledScene, task: &RayTask, hit: Option<&Hit>, out: &mut Sink<'_, O>) {
-        let mut task = *task;
         // What the body that the ray travels in does to it on the way.
-        let distance = hit.map_or(f64::INFINITY, |hit| hit.t);
-        self.travel(scene, &mut task, distance, out);
+        let weakened;
+        let task = match medium_around(scene, task, out) {
+            None => task,
+            Some(medium) => {
+                let distance = hit.map_or(f64::INFINITY, |hit| hit.t);
+                weakened = travel(scene, task, medium, distance, out);
+                &weakened
+            }
+        };
 
         let Some(hit) = hit else {
-            out.met(&task, None);
-            out.add(&task, Term::Background, self.background(scene, &task));
+            out.met(task, None);
+            out.add(task, Term::Background, self.background(scene, task));
             return;
         };
         let interaction = scene.interaction(&task.ray, hit);
-        out.met(&task, Some(&interaction));
+        out.met(task, Some(&interaction));
         let material = &scene.materials[interaction.material as usize];
         let bsdf = material.bsdf(&scene.textures, &interaction);
 
@@ -85,34 +92,22 @@ impl Integrator for Whitted {
         if let Some(crossing) = crossing
             && crossing.is_without_effect()
         {
-            out.pass(&task, interaction.spawn_ray(task.ray.direction), crossing.after);
+            out.pass(task, interaction.spawn_ray(task.ray.direction), crossing.after);
             return;
         }
 
         let wo = -task.ray.direction;
-        add_local_terms(scene, &task, &interaction, &bsdf, wo, out);
+        add_local_terms(scene, task, &interaction, &bsdf, wo, out);
         if !bsdf.mirror.is_black() {
-            spawn_reflected(&task, &interaction, wo, bsdf.mirror, out);
+            spawn_reflected(task, &interaction, wo, bsdf.mirror, out);
         }
         if let (Some(interface), Some(crossing)) = (bsdf.interface, crossing) {
-            self.spawn_at_interface(scene, &task, &interaction, wo, interface, crossing, out);
+            self.spawn_at_interface(scene, task, &interaction, wo, interface, crossing, out);
         }
     }
 }
 
 impl Whitted {
-    /// Absorbs and scatters over the stretch up to the hit.
-    fn travel<O: Observer>(&self, scene: &CompiledScene, task: &mut RayTask, distance: f64, out: &mut Sink<'_, O>) {
-        let Some(inside) = out.media.current(task.media) else { return };
-        let Some(body) = &scene.materials[inside.material as usize].body else { return };
-        if !body.medium.scattering.is_black() {
-            scattering::gather(scene, task, &body.medium, distance, out);
-        }
-        if !body.medium.is_clear() {
-            task.throughput *= beer_lambert(body.medium.absorption + body.medium.scattering, distance);
-        }
-    }
-
     /// Reflection and refraction at the boundary of a transparent body.
     #[expect(clippy::too_many_arguments, reason = "the parts of one hit; a struct of them would have this one user")]
     fn spawn_at_interface<O: Observer>(
@@ -185,6 +180,30 @@ impl Whitted {
     }
 }
 
+/// What the body that a ray travels in is filled with, where light does not pass it unchanged.
+#[inline]
+fn medium_around<'a, O>(scene: &'a CompiledScene, task: &RayTask, out: &Sink<'_, O>) -> Option<&'a Medium> {
+    let inside = out.media.current(task.media)?;
+    let body = scene.materials[inside.material as usize].body.as_ref()?;
+    (!body.medium.is_clear()).then_some(&body.medium)
+}
+
+/// Scatters over the stretch up to the hit, and gives the ray with what absorption leaves of it.
+#[inline(never)]
+fn travel<O: Observer>(
+    scene: &CompiledScene,
+    task: &RayTask,
+    medium: &Medium,
+    distance: f64,
+    out: &mut Sink<'_, O>,
+) -> RayTask {
+    if !medium.scattering.is_black() {
+        scattering::gather(scene, task, medium, distance, out);
+    }
+    let left = beer_lambert(medium.absorption + medium.scattering, distance);
+    RayTask { throughput: task.throughput * left, ..*task }
+}
+
 /// A boundary as one ray meets it.
 struct Boundary<'a> {
     interaction: &'a SurfaceInteraction,
@@ -246,16 +265,17 @@ fn add_local_terms<O: Observer>(
         }
         let local = bsdf.reflect_light(normal, wo, wi);
         let weight = task.throughput * arriving.irradiance;
+        let (diffuse, specular) = (weight * local.diffuse, weight * local.specular);
+        if out.needs_no_answer(diffuse, specular) {
+            continue;
+        }
         let ray = interaction.spawn_ray(wi);
         // From where the ray really starts: the light may be as near as the offset.
         let distance = arriving.distance - (ray.origin - interaction.point).dot(wi);
         out.ask(ShadowQuestion {
             ray,
             distance,
-            terms: [
-                (Term::Diffuse(number as u32), weight * local.diffuse),
-                (Term::Specular(number as u32), weight * local.specular),
-            ],
+            terms: [(Term::Diffuse(number as u32), diffuse), (Term::Specular(number as u32), specular)],
             sample: task.sample,
             task: task.id,
             media: task.media,
