@@ -127,7 +127,7 @@ pub fn explain(
     let mut scratch = Scratch::default();
     let ray = job.camera_ray(index, sample);
     let far = camera.far_distance(&ray);
-    job.tracer().trace([ray], &mut scratch, &mut Statistics::default(), &mut tree, |_, _, hit| {
+    job.tracer().trace([(ray, sample)], &mut scratch, &mut Statistics::default(), &mut tree, |_, _, hit| {
         *hit = hit.filter(|hit| hit.t <= far);
     });
     Ok(tree)
@@ -198,9 +198,9 @@ impl<I: Integrator> Job<'_, I> {
             if progress.is_cancelled() {
                 break;
             }
-            let rays = pixels
-                .iter()
-                .flat_map(|&pixel| samples.clone().map(move |sample| self.camera_ray(pixel as usize, sample)));
+            let rays = pixels.iter().flat_map(|&pixel| {
+                samples.clone().map(move |sample| (self.camera_ray(pixel as usize, sample), sample))
+            });
             let colors = self.tracer().trace(rays, scratch, &mut statistics, &mut NoObserver, |number, ray, hit| {
                 let far = self.camera.far_distance(ray);
                 *hit = hit.filter(|hit| hit.t <= far);
