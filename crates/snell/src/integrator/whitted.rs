@@ -4,8 +4,8 @@
 //! the ambient term, then each light, then reflection, then refraction. World space; `wo` leads to the viewer, `wi` to a
 //! light, both leaving the surface.
 
-use snell_math::spectrum::Bands;
-use snell_math::{Normal3, Rgb, Vector3};
+use snell_math::spectrum::{Band as SpectralBand, Bands};
+use snell_math::{Dispersion, Normal3, Rgb, Vector3};
 use snell_scene::scene::Medium;
 
 use super::{Integrator, Sink, Spawn, scattering};
@@ -19,10 +19,17 @@ use crate::optics::{beer_lambert, fresnel_dielectric, reflect, refract};
 use crate::task::{Band, Crossing, Inside, RayKind, RayTask, ShadowQuestion, Term};
 use crate::texture::ViewProjection;
 
+/// The samples of a pixel split white light at borders shifted by these sixteenths of a band, in turn; the van der Corput
+/// sequence, so that the first few are as even as all.
+const SHIFTS: [u8; 16] = [0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15];
+
 /// Recursive ray tracing over lights without extent.
 #[derive(Clone, Debug)]
 pub struct Whitted {
-    bands: Bands,
+    /// White light split in several ways, one after the other: [`SHIFTS`] times `stride` places, the last ones of each empty
+    /// where it has fewer bands.
+    bands: Vec<Option<SpectralBand>>,
+    stride: usize,
     /// For each material, its index of refraction in each band; empty where it does not disperse.
     band_indices: Vec<Vec<f64>>,
     camera: Camera,
@@ -32,11 +39,14 @@ pub struct Whitted {
 impl Whitted {
     /// For a scene seen by a camera, splitting white light into `bands` wavelength bands at dispersive surfaces.
     pub fn new(scene: &CompiledScene, camera: &Camera, bands: u32) -> Self {
-        let bands = Bands::new(bands);
+        let splits: Vec<Bands> =
+            SHIFTS.map(|shift| Bands::shifted(bands, f64::from(shift) / SHIFTS.len() as f64)).into();
+        let stride = splits.iter().map(Bands::len).max().unwrap_or(1);
+        let bands: Vec<_> =
+            splits.iter().flat_map(|split| (0..stride).map(|i| split.as_slice().get(i).copied())).collect();
+        let index = |ior: &Dispersion, band: &Option<_>| band.map_or(1.0, |b: SpectralBand| ior.index(b.wavelength_nm));
         let indices = |material: &crate::material::Material| match &material.body {
-            Some(body) if body.ior.is_dispersive() => {
-                bands.iter().map(|band| body.ior.index(band.wavelength_nm)).collect()
-            }
+            Some(body) if body.ior.is_dispersive() => bands.iter().map(|band| index(&body.ior, band)).collect(),
             _ => Vec::new(),
         };
         let [u, v, w] = camera.axes();
@@ -46,7 +56,7 @@ impl Whitted {
             Projection::Orthographic => ViewProjection::for_orthographic(u, v, w, (right - left) / (top - bottom)),
         };
         let band_indices = scene.materials.iter().map(indices).collect();
-        Self { bands, band_indices, camera: camera.clone(), view }
+        Self { bands, stride, band_indices, camera: camera.clone(), view }
     }
 
     /// What a ray sees that leaves the scene.
@@ -126,8 +136,9 @@ impl Whitted {
         let mut reflected = Rgb::BLACK;
         if splits {
             // Each band for itself: the reflected shares come together again, since reflection does not disperse.
-            for (number, part) in self.bands.iter().enumerate() {
-                let band = Some(Band(number as u8));
+            let first = task.sequence as usize % SHIFTS.len() * self.stride;
+            for (number, part) in (first..).zip(self.bands[first..first + self.stride].iter().flatten()) {
+                let band = Some(Band(number as u16));
                 reflected += part.weight * self.refract_band(scene, task, &boundary, band, part.weight, out);
             }
         } else {

@@ -127,7 +127,7 @@ pub fn explain(
     let [dx, dy] = sampling::pixel_sample(sample);
     let ray = camera.generate_ray(f64::from(pixel[0]) + dx, f64::from(pixel[1]) + dy);
     let far = camera.far_distance(&ray);
-    job.tracer().trace([ray], &mut scratch, &mut Statistics::default(), &mut tree, |_, _, hit| {
+    job.tracer().trace([(ray, sample)], &mut scratch, &mut Statistics::default(), &mut tree, |_, _, hit| {
         *hit = hit.filter(|hit| hit.t <= far);
     });
     Ok(tree)
@@ -152,6 +152,11 @@ struct Samples {
 impl Samples {
     fn new(numbers: std::ops::Range<u32>) -> Self {
         Self { first: numbers.start, places: numbers.map(sampling::pixel_sample).collect() }
+    }
+
+    /// Each one's place in the pixel and in the sequence.
+    fn iter(&self) -> impl Iterator<Item = ([f64; 2], u32)> {
+        self.places.iter().copied().zip(self.first..)
     }
 }
 
@@ -216,8 +221,9 @@ impl<I: Integrator> Job<'_, I> {
             if progress.is_cancelled() {
                 break;
             }
-            let rays =
-                pixels.iter().flat_map(|&pixel| samples.places.iter().map(move |&place| self.camera_ray(pixel, place)));
+            let rays = pixels
+                .iter()
+                .flat_map(|&pixel| samples.iter().map(move |(place, number)| (self.camera_ray(pixel, place), number)));
             let colors = self.tracer().trace(rays, scratch, &mut statistics, &mut NoObserver, |number, ray, hit| {
                 let far = self.camera.far_distance(ray);
                 if hit.is_some_and(|hit| hit.t > far) {
