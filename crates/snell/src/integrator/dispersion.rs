@@ -13,7 +13,7 @@ use crate::optics::refract;
 use crate::task::{Band, Inside};
 
 /// How far the directions of neighbouring bands may be apart, in the angle that a pixel is seen under.
-const TOLERANCE: f64 = 2.0;
+const TOLERANCE: f64 = 1.5;
 /// Where most of the colour is, in nanometres: the directions of these are compared.
 const ENDS_NM: [f64; 2] = [420.0, 670.0];
 /// The samples of a pixel split at borders shifted by these sixteenths of a band, in turn; the van der Corput sequence, so
