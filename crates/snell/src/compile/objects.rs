@@ -12,12 +12,14 @@ use crate::geometry::{Attributes, Geometry, NONE, ObjectSpace, Placement, Primit
 use crate::material::Material;
 use crate::shape::Shape;
 use crate::shape::triangle_mesh::TriangleMesh;
+use crate::texture::Textures;
 
 /// Compiles all objects of a scene, with their names. `materials` is the scene's list with the one for objects without
 /// material at its end. `None` where there is an error among the diagnostics.
 pub fn compile(
     scene: &Scene,
     materials: &[Material],
+    textures: &Textures,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Option<(Geometry, Vec<String>)> {
     if let Some(error) = refuse_too_many(scene) {
@@ -57,10 +59,10 @@ pub fn compile(
     let Compiler { prototypes, solids, names, .. } = compiler;
     let mesh_materials =
         scene.meshes.iter().map(|mesh| mesh.materials.iter().map(|id| id.index() as u32).collect()).collect();
-    let textured = materials.iter().map(Material::is_textured).collect();
+    let spaces = materials.iter().map(|material| material.spaces(textures)).collect();
     let default_material = materials.len() as u32 - 1;
     let geometry =
-        Geometry { world, prototypes, meshes, mesh_materials, solids, transparent, textured, default_material };
+        Geometry { world, prototypes, meshes, mesh_materials, solids, transparent, spaces, default_material };
     Some((geometry, names))
 }
 
@@ -80,6 +82,7 @@ struct Compiler<'a> {
 struct Parts {
     bounded: Vec<(Bounds3, Primitive, Attributes)>,
     unbounded: Vec<(Primitive, Attributes)>,
+    shapes: Vec<Shape>,
     placements: Vec<Placement>,
     object_spaces: Vec<ObjectSpace>,
 }
@@ -135,7 +138,11 @@ impl Compiler<'_> {
         };
         let bounds = shape.bounds();
         let bounds = if placement == NONE { bounds } else { placed_bounds(&space_from_object, &bounds) };
-        parts.push(bounds, Primitive::Shape { shape, placement }, attributes);
+        let primitive = match shape {
+            Shape::Sphere(sphere) if placement == NONE => Primitive::Sphere(sphere),
+            shape => Primitive::Shape { shape: parts.add_shape(shape), placement },
+        };
+        parts.push(bounds, primitive, attributes);
     }
 
     fn add_mesh(&mut self, object: &Object, mesh: Id<scene::Mesh>, context: Context, parts: &mut Parts) {
@@ -300,6 +307,11 @@ impl Parts {
         }
     }
 
+    fn add_shape(&mut self, shape: Shape) -> u32 {
+        self.shapes.push(shape);
+        self.shapes.len() as u32 - 1
+    }
+
     fn add_placement(&mut self, space_from_object: Transform) -> u32 {
         self.placements.push(Placement::new(space_from_object));
         self.placements.len() as u32 - 1
@@ -324,8 +336,8 @@ impl Parts {
             attributes.push(attribute);
         }
         let bvh = Bvh::build(&bounds)?;
-        let Self { placements, object_spaces, .. } = self;
-        Ok(Space { primitives, attributes, bounds, placements, object_spaces, bvh })
+        let Self { shapes, placements, object_spaces, .. } = self;
+        Ok(Space { primitives, attributes, bounds, shapes, placements, object_spaces, bvh })
     }
 }
 

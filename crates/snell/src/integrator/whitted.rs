@@ -4,8 +4,9 @@
 //! the ambient term, then each light, then reflection, then refraction. World space; `wo` leads to the viewer, `wi` to a
 //! light, both leaving the surface.
 
-use snell_math::spectrum::Bands;
-use snell_math::{Normal3, Rgb, Vector3};
+use snell_math::spectrum::{Band as SpectralBand, Bands};
+use snell_math::{Dispersion, Normal3, Rgb, Vector3};
+use snell_scene::scene::Medium;
 
 use super::{Integrator, Sink, Spawn, scattering};
 use crate::camera::{Camera, Projection, Window};
@@ -18,10 +19,17 @@ use crate::optics::{beer_lambert, fresnel_dielectric, reflect, refract};
 use crate::task::{Band, Crossing, Inside, RayKind, RayTask, ShadowQuestion, Term};
 use crate::texture::ViewProjection;
 
+/// The samples of a pixel split white light at borders shifted by these sixteenths of a band, in turn; the van der Corput
+/// sequence, so that the first few are as even as all.
+const SHIFTS: [u8; 16] = [0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15];
+
 /// Recursive ray tracing over lights without extent.
 #[derive(Clone, Debug)]
 pub struct Whitted {
-    bands: Bands,
+    /// White light split in several ways, one after the other: [`SHIFTS`] times `stride` places, the last ones of each empty
+    /// where it has fewer bands.
+    bands: Vec<Option<SpectralBand>>,
+    stride: usize,
     /// For each material, its index of refraction in each band; empty where it does not disperse.
     band_indices: Vec<Vec<f64>>,
     camera: Camera,
@@ -31,11 +39,14 @@ pub struct Whitted {
 impl Whitted {
     /// For a scene seen by a camera, splitting white light into `bands` wavelength bands at dispersive surfaces.
     pub fn new(scene: &CompiledScene, camera: &Camera, bands: u32) -> Self {
-        let bands = Bands::new(bands);
+        let splits: Vec<Bands> =
+            SHIFTS.map(|shift| Bands::shifted(bands, f64::from(shift) / SHIFTS.len() as f64)).into();
+        let stride = splits.iter().map(Bands::len).max().unwrap_or(1);
+        let bands: Vec<_> =
+            splits.iter().flat_map(|split| (0..stride).map(|i| split.as_slice().get(i).copied())).collect();
+        let index = |ior: &Dispersion, band: &Option<_>| band.map_or(1.0, |b: SpectralBand| ior.index(b.wavelength_nm));
         let indices = |material: &crate::material::Material| match &material.body {
-            Some(body) if body.ior.is_dispersive() => {
-                bands.iter().map(|band| body.ior.index(band.wavelength_nm)).collect()
-            }
+            Some(body) if body.ior.is_dispersive() => bands.iter().map(|band| index(&body.ior, band)).collect(),
             _ => Vec::new(),
         };
         let [u, v, w] = camera.axes();
@@ -45,7 +56,7 @@ impl Whitted {
             Projection::Orthographic => ViewProjection::for_orthographic(u, v, w, (right - left) / (top - bottom)),
         };
         let band_indices = scene.materials.iter().map(indices).collect();
-        Self { bands, band_indices, camera: camera.clone(), view }
+        Self { bands, stride, band_indices, camera: camera.clone(), view }
     }
 
     /// What a ray sees that leaves the scene.
@@ -61,18 +72,24 @@ impl Whitted {
 
 impl Integrator for Whitted {
     fn shade<O: Observer>(&self, scene: &CompiledScene, task: &RayTask, hit: Option<&Hit>, out: &mut Sink<'_, O>) {
-        let mut task = *task;
         // What the body that the ray travels in does to it on the way.
-        let distance = hit.map_or(f64::INFINITY, |hit| hit.t);
-        self.travel(scene, &mut task, distance, out);
+        let weakened;
+        let task = match medium_around(scene, task, out) {
+            None => task,
+            Some(medium) => {
+                let distance = hit.map_or(f64::INFINITY, |hit| hit.t);
+                weakened = travel(scene, task, medium, distance, out);
+                &weakened
+            }
+        };
 
         let Some(hit) = hit else {
-            out.met(&task, None);
-            out.add(&task, Term::Background, self.background(scene, &task));
+            out.met(task, None);
+            out.add(task, Term::Background, self.background(scene, task));
             return;
         };
         let interaction = scene.interaction(&task.ray, hit);
-        out.met(&task, Some(&interaction));
+        out.met(task, Some(&interaction));
         let material = &scene.materials[interaction.material as usize];
         let bsdf = material.bsdf(&scene.textures, &interaction);
 
@@ -85,34 +102,22 @@ impl Integrator for Whitted {
         if let Some(crossing) = crossing
             && crossing.is_without_effect()
         {
-            out.pass(&task, interaction.spawn_ray(task.ray.direction), crossing.after);
+            out.pass(task, interaction.spawn_ray(task.ray.direction), crossing.after);
             return;
         }
 
         let wo = -task.ray.direction;
-        add_local_terms(scene, &task, &interaction, &bsdf, wo, out);
+        add_local_terms(scene, task, &interaction, &bsdf, wo, out);
         if !bsdf.mirror.is_black() {
-            spawn_reflected(&task, &interaction, wo, bsdf.mirror, out);
+            spawn_reflected(task, &interaction, wo, bsdf.mirror, out);
         }
         if let (Some(interface), Some(crossing)) = (bsdf.interface, crossing) {
-            self.spawn_at_interface(scene, &task, &interaction, wo, interface, crossing, out);
+            self.spawn_at_interface(scene, task, &interaction, wo, interface, crossing, out);
         }
     }
 }
 
 impl Whitted {
-    /// Absorbs and scatters over the stretch up to the hit.
-    fn travel<O: Observer>(&self, scene: &CompiledScene, task: &mut RayTask, distance: f64, out: &mut Sink<'_, O>) {
-        let Some(inside) = out.media.current(task.media) else { return };
-        let Some(body) = &scene.materials[inside.material as usize].body else { return };
-        if !body.medium.scattering.is_black() {
-            scattering::gather(scene, task, &body.medium, distance, out);
-        }
-        if !body.medium.is_clear() {
-            task.throughput *= beer_lambert(body.medium.absorption + body.medium.scattering, distance);
-        }
-    }
-
     /// Reflection and refraction at the boundary of a transparent body.
     #[expect(clippy::too_many_arguments, reason = "the parts of one hit; a struct of them would have this one user")]
     fn spawn_at_interface<O: Observer>(
@@ -131,8 +136,9 @@ impl Whitted {
         let mut reflected = Rgb::BLACK;
         if splits {
             // Each band for itself: the reflected shares come together again, since reflection does not disperse.
-            for (number, part) in self.bands.iter().enumerate() {
-                let band = Some(Band(number as u8));
+            let first = task.sequence as usize % SHIFTS.len() * self.stride;
+            for (number, part) in (first..).zip(self.bands[first..first + self.stride].iter().flatten()) {
+                let band = Some(Band(number as u16));
                 reflected += part.weight * self.refract_band(scene, task, &boundary, band, part.weight, out);
             }
         } else {
@@ -183,6 +189,30 @@ impl Whitted {
             (inside, _) => scene.index_d(inside),
         }
     }
+}
+
+/// What the body that a ray travels in is filled with, where light does not pass it unchanged.
+#[inline]
+fn medium_around<'a, O>(scene: &'a CompiledScene, task: &RayTask, out: &Sink<'_, O>) -> Option<&'a Medium> {
+    let inside = out.media.current(task.media)?;
+    let body = scene.materials[inside.material as usize].body.as_ref()?;
+    (!body.medium.is_clear()).then_some(&body.medium)
+}
+
+/// Scatters over the stretch up to the hit, and gives the ray with what absorption leaves of it.
+#[inline(never)]
+fn travel<O: Observer>(
+    scene: &CompiledScene,
+    task: &RayTask,
+    medium: &Medium,
+    distance: f64,
+    out: &mut Sink<'_, O>,
+) -> RayTask {
+    if !medium.scattering.is_black() {
+        scattering::gather(scene, task, medium, distance, out);
+    }
+    let left = beer_lambert(medium.absorption + medium.scattering, distance);
+    RayTask { throughput: task.throughput * left, ..*task }
 }
 
 /// A boundary as one ray meets it.
@@ -246,16 +276,17 @@ fn add_local_terms<O: Observer>(
         }
         let local = bsdf.reflect_light(normal, wo, wi);
         let weight = task.throughput * arriving.irradiance;
+        let (diffuse, specular) = (weight * local.diffuse, weight * local.specular);
+        if out.needs_no_answer(diffuse, specular) {
+            continue;
+        }
         let ray = interaction.spawn_ray(wi);
         // From where the ray really starts: the light may be as near as the offset.
         let distance = arriving.distance - (ray.origin - interaction.point).dot(wi);
         out.ask(ShadowQuestion {
             ray,
             distance,
-            terms: [
-                (Term::Diffuse(number as u32), weight * local.diffuse),
-                (Term::Specular(number as u32), weight * local.specular),
-            ],
+            terms: [(Term::Diffuse(number as u32), diffuse), (Term::Specular(number as u32), specular)],
             sample: task.sample,
             task: task.id,
             media: task.media,

@@ -6,8 +6,8 @@
 use snell::interaction::SurfaceInteraction;
 use snell::math::{Ray, Rgb};
 use snell::observe::{AnsweredShadow, RayTree, TracedRay};
-use snell::scene::Scene;
-use snell::scene::scene::Shadows;
+use snell::scene::scene::{Pattern, Shadows};
+use snell::scene::{Id, Scene};
 use snell::task::{RayKind, Term};
 use snell_testkit::must_fail;
 
@@ -24,6 +24,7 @@ enum Thing {
 }
 
 struct Scan<'a> {
+    scene: &'a Scene,
     stage: &'a Stage,
     tree: RayTree,
 }
@@ -40,10 +41,11 @@ const KINDS: [&str; 7] = [
 
 impl Scan<'_> {
     fn thing_at(&self, surface: &SurfaceInteraction) -> Thing {
-        let material = &self.stage.scene.materials[surface.material as usize];
-        if material.body.is_some() {
+        let material = &self.scene.materials[Id::from_index(surface.material)];
+        let is_pattern = |texture| !matches!(self.scene.textures[texture].pattern, Pattern::Constant(_));
+        if material.dielectric.is_some() {
             Thing::Glass
-        } else if material.is_textured() {
+        } else if material.diffuse.is_some_and(is_pattern) {
             Thing::Board
         } else {
             Thing::Ball
@@ -128,8 +130,8 @@ fn surface(ray: &TracedRay) -> Option<&SurfaceInteraction> {
 fn all_seven_are_in(scene: &Scene) {
     let stage = Stage::of(scene).sized(192, 144);
     let mut found: [Option<[u32; 2]>; 7] = [None; 7];
-    for [x, y] in stage.pixels() {
-        let scan = Scan { stage: &stage, tree: stage.explain(x, y) };
+    for ([x, y], tree) in stage.trees() {
+        let scan = Scan { scene, stage: &stage, tree };
         for (found, is) in found.iter_mut().zip(scan.kinds()) {
             if is {
                 found.get_or_insert([x, y]);

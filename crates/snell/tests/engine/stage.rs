@@ -1,11 +1,13 @@
 //! A scene on the stage: rays shot through the very loop that renders pictures, and the pictures themselves.
 
+use snell::camera::Camera;
 use snell::compile::CompiledScene;
 use snell::image::Image;
 use snell::integrator::{Rules, Whitted};
+use snell::math::sampling;
 use snell::math::{Normal3, Point3, Ray, Rgb, Vector3};
 use snell::observe::{RayTree, TracedRay};
-use snell::render::{NoProgress, RenderSettings, Rendering, explain, render};
+use snell::render::{NoProgress, RenderSettings, Rendering, render};
 use snell::scene::Scene;
 use snell::scene::scene::Antialiasing;
 use snell::statistics::Statistics;
@@ -54,27 +56,31 @@ impl Stage {
         self.render().image
     }
 
-    /// The rays of one pixel's first sample.
-    pub fn explain(&self, x: u32, y: u32) -> RayTree {
-        explain(&self.scene, &self.settings, [x, y], 0).expect("a camera")
-    }
-
     /// Every pixel, from the top left.
     pub fn pixels(&self) -> impl Iterator<Item = [u32; 2]> {
         let (width, height) = (self.settings.width, self.settings.height);
         (0..height).flat_map(move |y| (0..width).map(move |x| [x, y]))
     }
 
+    /// The rays of every pixel's first sample, from the top left.
+    pub fn trees(&self) -> impl Iterator<Item = ([u32; 2], RayTree)> {
+        let watch = self.watch();
+        let [dx, dy] = sampling::pixel_sample(0);
+        self.pixels().map(move |[x, y]| {
+            let ray = watch.camera.generate_ray(f64::from(x) + dx, f64::from(y) + dy);
+            ([x, y], watch.shoot(ray).0)
+        })
+    }
+
     /// Shoots one ray as if it came from the camera; its tree and the counts.
     pub fn shoot(&self, ray: Ray) -> (RayTree, Statistics) {
+        self.watch().shoot(ray)
+    }
+
+    fn watch(&self) -> Watch<'_> {
         let camera = self.settings.camera(&self.scene).expect("a camera");
         let integrator = Whitted::new(&self.scene, &camera, self.settings.bands);
-        let RenderSettings { depth, min_weight, weightless_rays, shadows, .. } = self.settings;
-        let rules = Rules { depth, min_weight, weightless_rays, shadows };
-        let tracer = Tracer { scene: &self.scene, integrator: &integrator, rules };
-        let (mut tree, mut statistics) = (RayTree::default(), Statistics::default());
-        tracer.trace([ray], &mut Scratch::default(), &mut statistics, &mut tree, |_, _, _| {});
-        (tree, statistics)
+        Watch { stage: self, camera, integrator }
     }
 
     /// Shoots a ray from a point in a direction of any length.
@@ -85,6 +91,24 @@ impl Stage {
     /// The colour that a ray sees.
     pub fn color(&self, origin: [f64; 3], direction: [f64; 3]) -> Rgb {
         self.ray(origin, direction).sum()
+    }
+}
+
+/// What several rays are shot with.
+struct Watch<'a> {
+    stage: &'a Stage,
+    camera: Camera,
+    integrator: Whitted,
+}
+
+impl Watch<'_> {
+    fn shoot(&self, ray: Ray) -> (RayTree, Statistics) {
+        let RenderSettings { depth, min_weight, weightless_rays, shadows, .. } = self.stage.settings;
+        let rules = Rules { depth, min_weight, weightless_rays, shadows };
+        let tracer = Tracer { scene: &self.stage.scene, integrator: &self.integrator, rules };
+        let (mut tree, mut statistics) = (RayTree::default(), Statistics::default());
+        tracer.trace([(ray, 0)], &mut Scratch::default(), &mut statistics, &mut tree, |_, _, _| {});
+        (tree, statistics)
     }
 }
 

@@ -63,7 +63,7 @@ fn bands_together_are_white_again() {
              [2, 5, 3, 0]] }}"
         ));
         let (tree, statistics) =
-            stage.shoot(Ray::new(Point3::new(-5.0, -1.6, 0.1), Vector3::new(1.0, 0.5, 0.0).normalize()));
+            stage.shoot(Ray::new(Point3::new(-5.0, -2.435, 0.1), Vector3::new(1.0, 0.73, 0.0).normalize()));
         assert_eq!(statistics.total_internal_reflections, 0);
         tree.sum()
     };

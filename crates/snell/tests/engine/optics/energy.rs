@@ -9,8 +9,7 @@ use crate::stage::{Stage, assert_near};
 
 /// Asserts that the shares and what was cut off add up to white, in every pixel; gives the counts.
 fn is_white(stage: &Stage, tolerance: f32) -> Statistics {
-    for [x, y] in stage.pixels() {
-        let tree = stage.explain(x, y);
+    for ([x, y], tree) in stage.trees() {
         let cut = tree.rays.iter().flat_map(|ray| &ray.cuts).fold(Rgb::BLACK, |sum, (_, weight)| sum + *weight);
         assert_near(tree.sum() + cut, Rgb::WHITE, tolerance, &format!("pixel {x}, {y}"));
     }

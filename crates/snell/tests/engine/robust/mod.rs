@@ -3,3 +3,4 @@
 mod closed;
 mod grazing;
 mod self_shadow;
+mod touching;

@@ -34,8 +34,8 @@ const SHAPES: [(&str, &str); 11] = [
 const PLACEMENTS: [(&str, [f64; 3], [f64; 3], bool); 4] = [
     ("straight", [1.0; 3], [0.0; 3], false),
     ("turned", [1.0; 3], [25.0, 40.0, -10.0], false),
-    ("stretched", [1.0, 0.4, 1.3], [10.0, -50.0, 30.0], false),
-    ("instanced", [1.2, 0.8, -1.0], [70.0, 20.0, 5.0], true),
+    ("stretched", [1.0, 0.4, 1.3], [10.0, -25.0, 30.0], false),
+    ("instanced", [1.2, 0.8, -1.0], [20.0, 50.0, 5.0], true),
 ];
 
 /// A shape of that size somewhere, seen by a camera near it under a light at the camera.
@@ -62,8 +62,7 @@ fn scene(shape: &str, size: f64, away: [f64; 3], stretch: [f64; 3], turn: [f64; 
 fn is_fully_lit(stage: &Stage, what: &str) -> usize {
     let picture = stage.picture();
     let mut lit = 0;
-    for [x, y] in stage.pixels() {
-        let tree = stage.explain(x, y);
+    for ([x, y], tree) in stage.trees() {
         let Some(surface) = tree.rays[0].hit.flatten() else { continue };
         let cosine = surface.shading_normal.dot(tree.rays[0].task.ray.direction).abs();
         // At the silhouette the rounding of the point decides what is seen at all.
@@ -86,7 +85,7 @@ fn nothing_shadows_itself() {
                 for away in [[0.0; 3], [1e6, -7e5, 3e5]] {
                     let what = format!("{name}, {placement}, of size {size}, at {away:?}");
                     let lit = is_fully_lit(&scene(shape, size, away, stretch, turn, instanced), &what);
-                    assert!(lit > 1, "{what}: {lit} pixels");
+                    assert!(lit > 3, "{what}: {lit} pixels");
                 }
             }
         }
