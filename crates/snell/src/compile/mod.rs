@@ -1,5 +1,6 @@
 //! From the scene as its author described it to the flat, immutable form that is traced.
 
+mod count;
 mod images;
 mod objects;
 

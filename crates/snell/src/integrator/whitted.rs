@@ -273,7 +273,7 @@ fn spawn_reflected<O: Observer>(
     weight: Rgb,
     out: &mut Sink<'_, O>,
 ) {
-    if weight.is_black() {
+    if weight.is_black() && !out.rules.weightless_rays {
         return;
     }
     let direction = reflect(wo, consistent_normal(interaction, wo));

@@ -273,8 +273,9 @@ impl<I: Integrator> Job<'_, I> {
     }
 
     fn tracer(&self) -> Tracer<'_, I> {
-        let RenderSettings { depth, min_weight, shadows, .. } = *self.settings;
-        Tracer { scene: self.scene, integrator: self.integrator, rules: Rules { depth, min_weight, shadows } }
+        let RenderSettings { depth, min_weight, weightless_rays, shadows, .. } = *self.settings;
+        let rules = Rules { depth, min_weight, weightless_rays, shadows };
+        Tracer { scene: self.scene, integrator: self.integrator, rules }
     }
 
     /// The picture, or the given pixels of it, in square tiles; each is a list of pixel places.
