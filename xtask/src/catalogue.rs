@@ -10,6 +10,9 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
+use crate::Outcome;
+use crate::arguments::Arguments;
+
 /// The file that is written, from the root of the repository.
 const TABLE: &str = "crates/snell-scene/src/catalogue/measured.rs";
 /// The longest line of the project's code.
@@ -89,17 +92,11 @@ use super::{Entry, material, schott};
 
 ";
 
-/// Reads the database named on the command line and writes the table; says what is wrong and exits with 1 where that
-/// fails.
-pub fn run() {
-    let Some(database) = std::env::args().nth(2) else {
-        eprintln!("usage: cargo xtask catalogue DATABASE   (a checkout of refractiveindex.info-database)");
-        std::process::exit(2);
-    };
-    if let Err(error) = write_table(Path::new(&database)) {
-        eprintln!("catalogue: {error}");
-        std::process::exit(1);
-    }
+/// Reads the database named on the command line and writes the table.
+pub fn run(arguments: Arguments) -> Outcome {
+    let database = arguments.at_most_one_name()?;
+    let database = database.ok_or("say where the checkout of refractiveindex.info-database is")?;
+    write_table(Path::new(&database)).map_err(|error| error.to_string())
 }
 
 fn write_table(database: &Path) -> Result<(), Box<dyn Error>> {

@@ -4,6 +4,7 @@
 
 mod arguments;
 mod bench;
+mod catalogue;
 mod ci;
 mod fuzz;
 mod gallery;
@@ -66,6 +67,12 @@ const COMMANDS: &[Command] = &[
         usage: "[--seconds N] [TARGET]",
         summary: "feed the readers broken bytes with cargo-fuzz, 60 seconds per target unless told",
         run: fuzz::run,
+    },
+    Command {
+        name: "catalogue",
+        usage: "DATABASE",
+        summary: "write the table of measured glasses anew from a checkout of refractiveindex.info-database",
+        run: catalogue::run,
     },
 ];
 

@@ -135,7 +135,7 @@ pub struct RenderArguments {
     pub min_weight: Option<f32>,
 
     /// Bands of wavelengths that dispersive glass splits
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     #[arg(help_heading = "Rendering")]
     pub bands: Option<u32>,
 

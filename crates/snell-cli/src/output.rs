@@ -4,10 +4,8 @@ use std::fs::{self, OpenOptions};
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
-use snell::image::{
-    BitDepth, DisplayImage, ExrOptions, Image, Layers, PngOptions, WrongPixelCount, encode_exr, encode_png,
-};
-use snell::render::{self, RenderSettings, Rendering};
+use snell::image::{BitDepth, DisplayImage, ExrOptions, PngOptions, encode_exr, encode_png};
+use snell::render::{RenderSettings, Rendering};
 use snell::scene::Diagnostic;
 use tempfile::NamedTempFile;
 
@@ -203,23 +201,12 @@ fn encode(format: Format, rendering: &Rendering, settings: &RenderSettings) -> R
             encode_png(&display, &PngOptions { text, ..PngOptions::default() })
         }
         Format::Exr => {
-            let layers =
-                rendering.layers.as_ref().map_or(Ok(Layers::default()), |layers| exr_layers(rendering, layers));
             let options = ExrOptions { software: Some(SOFTWARE.to_owned()), ..ExrOptions::default() };
-            let layers = layers.map_err(|error| Failure::input(Diagnostic::error(error.to_string())))?;
+            let layers = rendering.layers.clone().unwrap_or_default();
             encode_exr(&rendering.image, &layers, &options)
         }
     };
     encoded.map_err(|error| Failure::input(Diagnostic::error(error.to_string())))
-}
-
-fn exr_layers(rendering: &Rendering, layers: &render::Layers) -> Result<Layers, WrongPixelCount> {
-    let (width, height) = rendering.image.size();
-    Ok(Layers {
-        depth: Some(Image::from_pixels(width, height, layers.depth.clone())?),
-        normal: Some(Image::from_pixels(width, height, layers.normal.clone())?),
-        object: Some(Image::from_pixels(width, height, layers.object.clone())?),
-    })
 }
 
 #[cfg(test)]

@@ -146,11 +146,11 @@ impl Image<Rgb> {
 /// What a rendered picture knows of each pixel besides its colour. Every layer has the size of the picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layers {
-    /// Distance along the camera ray to the first surface, in world units; infinite where nothing was hit.
+    /// Distance from the eye to the first surface along the gaze, in world units; infinite where nothing was hit.
     pub depth: Option<Image<f32>>,
-    /// The unit normal of the first surface in world space; zero where nothing was hit.
+    /// The unit shading normal of the first surface, world space, on the viewer's side; zero where nothing was hit.
     pub normal: Option<Image<[f32; 3]>>,
-    /// The number of the object first hit; `u32::MAX` where nothing was hit.
+    /// The object first hit, counted from 1 in the order of the scene; 0 where nothing was hit.
     pub object: Option<Image<u32>>,
 }
 

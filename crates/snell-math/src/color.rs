@@ -56,7 +56,8 @@ impl Rgb {
     /// True where all three are exactly zero.
     #[inline]
     pub fn is_black(self) -> bool {
-        self.r == 0.0 && self.g == 0.0 && self.b == 0.0
+        // As bits, without the sign: no branch for each of them.
+        (self.r.to_bits() | self.g.to_bits() | self.b.to_bits()) << 1 == 0
     }
 
     /// True where none is NaN or infinite.

@@ -28,7 +28,7 @@ impl PixelSum {
         if finite {
             for (sum, component) in self.sum.iter_mut().zip(sample.to_array()) {
                 let value = f64::from(component).clamp(-BRIGHTEST, BRIGHTEST);
-                *sum = sum.saturating_add((value / UNIT).round_ties_even() as i64);
+                *sum = sum.saturating_add(round(value / UNIT));
             }
         }
         finite
@@ -55,6 +55,16 @@ impl PixelSum {
         let [r, g, b] = self.sum.map(|sum| (sum as f64 * UNIT / f64::from(self.count)) as f32);
         Rgb::new(r, g, b)
     }
+}
+
+/// The nearest whole number, of two the even one, for magnitudes up to 2⁵⁰.
+///
+/// Adding a number whose last bit is worth one makes the addition itself round; there is an instruction for that on every
+/// machine, which there is not for `round_ties_even`.
+#[inline]
+fn round(value: f64) -> i64 {
+    const LAST_BIT_IS_ONE: f64 = 1.5 * (1_u64 << 52) as f64;
+    (value + LAST_BIT_IS_ONE - LAST_BIT_IS_ONE) as i64
 }
 
 /// The pixels of a picture in the making.

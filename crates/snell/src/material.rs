@@ -9,7 +9,7 @@ use snell_scene::Id;
 use snell_scene::scene;
 
 use crate::interaction::SurfaceInteraction;
-use crate::texture::{Footprint, TextureCoordinates, Textures};
+use crate::texture::{Footprint, Spaces, TextureCoordinates, Textures};
 
 /// What a surface does with light at one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -175,9 +175,9 @@ impl Material {
         Self { base: Bsdf { ambient: gray, diffuse: gray, ..Bsdf::BLACK }, textured: Vec::new(), body: None }
     }
 
-    /// Whether it matters where on its object a hit is.
-    pub fn is_textured(&self) -> bool {
-        !self.textured.is_empty()
+    /// Which coordinates of a hit matter.
+    pub fn spaces(&self, textures: &Textures) -> Spaces {
+        self.textured.iter().fold(Spaces::default(), |all, &(_, texture)| all.union(textures.spaces(texture)))
     }
 
     /// The lobes at a hit.
@@ -193,8 +193,15 @@ impl Material {
                 uv: interaction.uv,
                 footprint: Footprint::SHARP,
             };
+            let mut before = None;
             for &(slot, texture) in &self.textured {
-                *slot_of(&mut bsdf, slot) = textures.evaluate(texture, &coordinates);
+                // The ambient colour is most often the diffuse one.
+                let color = match before {
+                    Some((same, color)) if same == texture => color,
+                    _ => textures.evaluate(texture, &coordinates),
+                };
+                *slot_of(&mut bsdf, slot) = color;
+                before = Some((texture, color));
             }
         }
         if let Some(color) = interaction.vertex_color {

@@ -10,6 +10,9 @@ use crate::task::{Cut, RayTask, ShadowQuestion, Term};
 
 /// Sees everything the tracing loop does, in order. All methods do nothing by default.
 pub trait Observer {
+    /// False where nothing is seen, so that what would only be seen need not be computed.
+    const WATCHES: bool = true;
+
     /// A ray was spawned; its parent is known already.
     fn ray(&mut self, task: &RayTask) {
         let _ = task;
@@ -40,7 +43,9 @@ pub trait Observer {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoObserver;
 
-impl Observer for NoObserver {}
+impl Observer for NoObserver {
+    const WATCHES: bool = false;
+}
 
 /// Remembers everything that happened to the rays of one sample.
 #[derive(Clone, Debug, Default)]

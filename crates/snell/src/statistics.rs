@@ -11,7 +11,8 @@ pub struct Statistics {
     pub reflected_rays: u64,
     /// Rays spawned by refraction.
     pub refracted_rays: u64,
-    /// Rays towards lights.
+    /// Rays towards lights: one for each light on the lit side of a point. They count also where nothing depends on the
+    /// answer, because the surface would not send the light to the viewer, and none is traced.
     pub shadow_rays: u64,
     /// The depth of the deepest ray traced; 1 where there were only camera rays.
     pub max_depth: u32,

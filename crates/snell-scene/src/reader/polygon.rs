@@ -1,26 +1,32 @@
-//! Polygons into triangles: of any shape and in any plane, without holes.
+//! Polygons into triangles: of any shape and in any plane, without holes (but for ones joined to the border by a cut).
 //!
 //! The polygon is projected along the largest component of its normal, which is found by Newell's method (Sutherland et al.
 //! 1974; Tampieri, "Newell's method for computing the plane equation of a polygon", Graphics Gems III, 1992). A convex one
-//! becomes a fan, any other one goes through ear clipping (the `earcutr` crate, after Held's FIST, 2001). Lengths in the
-//! space of the points.
+//! becomes a fan; from any other one, ears are cut (Meisters 1975): corners whose triangle holds no reflex corner. Lengths
+//! in the space of the points.
 //!
-//! Ear clipping takes quadratic time in the worst case, so [`Triangulator`] bounds the work on all polygons of one file.
+//! A cut changes what its two neighbours are, so these are looked at again, and all others only once nothing is left to
+//! look at (Eberly, "Triangulation by ear clipping", 1998). That takes time in proportion to the corners times the reflex ones
+//! as a rule, but longer for polygons that cross themselves. So the steps are counted: a polygon that needs too many is
+//! finished without looking, and [`Triangulator`] bounds the steps for all polygons of one file. (The `earcutr` crate has no
+//! such bound: 1300 corners at eight places, as fuzzing found, take it half a minute.)
+
+use std::collections::VecDeque;
 
 use snell_math::Point3;
 
-/// The most corners of a polygon that is not convex.
-const MAX_CONCAVE_CORNERS: usize = 16_384;
-/// Steps that one file's polygons that are not convex may take together (the sum of their squared numbers of corners), …
-const BASE_WORK: u64 = 1_000_000_000;
+/// One polygon may take that many steps times the square of its number of corners; …
+const WORK_PER_SQUARE: u64 = 8;
+/// … all polygons of a file that many, …
+const BASE_WORK: u64 = 2_000_000_000;
 /// … and further steps for every corner that the file really has.
 const WORK_PER_CORNER: u64 = 500;
+/// The end of a list.
+const NONE: u32 = u32::MAX;
 
-/// The polygons that are not convex would take too long: too many corners, or too many such polygons.
+/// Polygons that are not convex would take too long: they have too many corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "polygons that are not convex have too many corners (at most {MAX_CONCAVE_CORNERS} each, fewer where there are many)"
-)]
+#[error("polygons that are not convex have too many corners to be cut into triangles")]
 pub struct TooComplex;
 
 /// Turns one polygon into triangles: triples of places in `corners`, turning the way the polygon does.
@@ -29,7 +35,7 @@ pub struct TooComplex;
 /// that is bent or crosses itself gives some triangles that cover about the same.
 ///
 /// # Errors
-/// [`TooComplex`] beyond 16384 corners, unless it is convex.
+/// [`TooComplex`] where it would take too long: possible beyond some ten thousand corners, unless it is convex.
 ///
 /// ```
 /// use snell_math::Point3;
@@ -51,6 +57,26 @@ pub struct Triangulator {
     work: u64,
     points: Vec<[f64; 3]>,
     flat: Vec<[f64; 2]>,
+    /// The corners that are left, as a ring.
+    next: Vec<u32>,
+    previous: Vec<u32>,
+    /// Those where the polygon does not turn left, in any order, and each corner's place among them or [`NONE`].
+    reflex: Vec<u32>,
+    place: Vec<u32>,
+    /// Corners to look at, each at most once.
+    queue: VecDeque<u32>,
+    queued: Vec<bool>,
+}
+
+/// What may be an ear.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Care {
+    /// No reflex corner in the triangle or on its border.
+    Strict,
+    /// Reflex corners at the triangle's own corners are allowed, as where a hole is joined to the border.
+    Relaxed,
+    /// Any corner where the polygon turns left: it crosses itself.
+    None,
 }
 
 impl Triangulator {
@@ -74,18 +100,132 @@ impl Triangulator {
             triangles.extend((1..count as u32 - 1).map(|i| [0, i, i + 1]));
             return Ok(());
         }
-        self.work += (count * count) as u64;
-        if count > MAX_CONCAVE_CORNERS || self.work > BASE_WORK + WORK_PER_CORNER * self.corners {
-            return Err(TooComplex);
+        if self.cut_ears(triangles) { Ok(()) } else { Err(TooComplex) }
+    }
+
+    /// Cuts ears off the flat polygon. False where the steps are used up.
+    fn cut_ears(&mut self, triangles: &mut Vec<[u32; 3]>) -> bool {
+        let count = self.flat.len() as u32;
+        self.next.clear();
+        self.next.extend((1..count).chain([0]));
+        self.previous.clear();
+        self.previous.extend([count - 1].into_iter().chain(0..count - 1));
+        self.reflex.clear();
+        self.place.clear();
+        self.place.resize(count as usize, NONE);
+        (0..count).for_each(|corner| self.classify(corner));
+
+        self.queued.clear();
+        self.queued.resize(count as usize, false);
+        // Every second corner first: triangles become less thin than in the order of the ring.
+        (0..count).step_by(2).chain((1..count).step_by(2)).for_each(|corner| self.look_at(corner));
+
+        let enough = self.work + WORK_PER_SQUARE * u64::from(count) * u64::from(count);
+        let limit = BASE_WORK + WORK_PER_CORNER * self.corners;
+        let (mut left, mut corner, mut care, mut any_cut) = (count, 0, Care::Strict, false);
+        while left >= 3 {
+            let Some(candidate) = self.queue.pop_front() else {
+                // Look at all again, less carefully if that has just been done in vain.
+                care = match care {
+                    _ if any_cut => care,
+                    Care::Strict => Care::Relaxed,
+                    Care::Relaxed => Care::None,
+                    // It turns right everywhere: what is left has been gone round the other way.
+                    Care::None => return true,
+                };
+                any_cut = false;
+                for _ in 0..left {
+                    self.look_at(corner);
+                    corner = self.next[corner as usize];
+                }
+                continue;
+            };
+            self.work += 1;
+            self.queued[candidate as usize] = false;
+            if self.next[candidate as usize] == NONE {
+                continue;
+            }
+            let (a, b, c) = (self.previous[candidate as usize], candidate, self.next[candidate as usize]);
+            let turn = self.turn(b);
+            let ear = turn > 0.0 && (care == Care::None || self.is_empty(a, b, c, care));
+            if ear || turn == 0.0 {
+                if ear {
+                    triangles.push([a, b, c]);
+                }
+                self.remove(a, b, c);
+                (left, corner, any_cut) = (left - 1, c, true);
+                care = if self.work < enough { Care::Strict } else { Care::None };
+                self.look_at(a);
+                self.look_at(c);
+            }
+            if self.work > limit {
+                return false;
+            }
         }
-        // The library fails for numbers that are not finite alone, and there are none.
-        let Ok(indices) = earcutr::earcut(self.flat.as_flattened(), &[], 2) else { return Ok(()) };
-        for triangle in indices.as_chunks::<3>().0 {
-            let [a, b, c] = triangle.map(|i| i as u32);
-            let area = cross(self.flat[a as usize], self.flat[b as usize], self.flat[c as usize]);
-            triangles.push(if area < 0.0 { [a, c, b] } else { [a, b, c] });
+        true
+    }
+
+    fn look_at(&mut self, corner: u32) {
+        if !std::mem::replace(&mut self.queued[corner as usize], true) {
+            self.queue.push_back(corner);
         }
-        Ok(())
+    }
+
+    /// How a corner turns: positive to the left, twice the area of its triangle.
+    fn turn(&self, corner: u32) -> f64 {
+        let [a, b, c] = [self.previous[corner as usize], corner, self.next[corner as usize]];
+        cross(self.flat[a as usize], self.flat[b as usize], self.flat[c as usize])
+    }
+
+    /// Puts a corner on the list of reflex ones, or takes it off.
+    fn classify(&mut self, corner: u32) {
+        let (reflex, place) = (self.turn(corner) <= 0.0, self.place[corner as usize]);
+        if reflex && place == NONE {
+            self.place[corner as usize] = self.reflex.len() as u32;
+            self.reflex.push(corner);
+        } else if !reflex {
+            self.forget(corner);
+        }
+    }
+
+    fn forget(&mut self, corner: u32) {
+        let place = std::mem::replace(&mut self.place[corner as usize], NONE);
+        if place != NONE {
+            self.reflex.swap_remove(place as usize);
+            if let Some(&moved) = self.reflex.get(place as usize) {
+                self.place[moved as usize] = place;
+            }
+        }
+    }
+
+    /// Takes b out of the ring.
+    fn remove(&mut self, a: u32, b: u32, c: u32) {
+        self.next[a as usize] = c;
+        self.previous[c as usize] = a;
+        self.next[b as usize] = NONE;
+        self.forget(b);
+        self.classify(a);
+        self.classify(c);
+    }
+
+    /// True where no reflex corner of the ring is in the triangle.
+    fn is_empty(&mut self, a: u32, b: u32, c: u32, care: Care) -> bool {
+        self.work += self.reflex.len() as u64 + 1;
+        let [pa, pb, pc] = [a, b, c].map(|corner| self.flat[corner as usize]);
+        let low = [0, 1].map(|i| pa[i].min(pb[i]).min(pc[i]));
+        let high = [0, 1].map(|i| pa[i].max(pb[i]).max(pc[i]));
+        self.reflex.iter().all(|&corner| {
+            let p = self.flat[corner as usize];
+            p[0] < low[0]
+                || p[0] > high[0]
+                || p[1] < low[1]
+                || p[1] > high[1]
+                || cross(pa, pb, p) < 0.0
+                || cross(pb, pc, p) < 0.0
+                || cross(pc, pa, p) < 0.0
+                || [a, b, c].contains(&corner)
+                || care == Care::Relaxed && [pa, pb, pc].contains(&p)
+        })
     }
 
     /// Projects the points so that the polygon turns counter-clockwise, with coordinates in [−1, 1]. False where it has no

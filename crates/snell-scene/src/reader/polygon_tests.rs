@@ -103,10 +103,61 @@ fn huge_and_tiny_coordinates_are_as_good_as_any() {
 }
 
 #[test]
-fn a_large_polygon_that_is_not_convex_is_refused_and_a_convex_one_is_not() {
-    let count = MAX_CONCAVE_CORNERS + 1;
-    let round = star(&vec![1.0; count], Vector3::X, 0.0);
-    assert_eq!(triangulate(&round).unwrap().len(), count - 2);
-    let jagged: Vec<f64> = (0..count).map(|i| if i % 2 == 0 { 1.0 } else { 0.9 }).collect();
-    assert_eq!(triangulate(&star(&jagged, Vector3::X, 0.0)), Err(TooComplex));
+fn a_hole_joined_to_the_border_stays_open() {
+    let p = |x: f64, y: f64| Point3::new(x, y, 1.0);
+    let border = [p(0.0, 0.0), p(9.0, 0.0), p(9.0, 9.0), p(0.0, 9.0), p(0.0, 0.0)];
+    let hole = [p(3.0, 3.0), p(3.0, 6.0), p(6.0, 6.0), p(6.0, 3.0), p(3.0, 3.0)];
+    let corners = [border.as_slice(), hole.as_slice()].concat();
+    let triangles = triangulate(&corners).unwrap();
+    assert!(covers(&corners, &triangles));
+    assert!((polygon_area(&corners).length() - 72.0).abs() < 1e-12);
+}
+
+#[test]
+fn spirals_and_combs_are_covered_exactly() {
+    let p = |x: f64, y: f64| Point3::new(x, y, 1.0);
+    let arm = |i: usize, width: f64| {
+        let (angle, radius) = (i as f64 * 0.1, 1.0 + i as f64 * 0.02 + width);
+        p(radius * portable::cos(angle), radius * portable::sin(angle))
+    };
+    let spiral: Vec<_> = (0..800).map(|i| arm(i, 0.3)).chain((0..800).rev().map(|i| arm(i, 0.0))).collect();
+    assert!(covers(&spiral, &triangulate(&spiral).unwrap()));
+    let teeth = (0..500).flat_map(|i| [p(f64::from(i), 1.0), p(f64::from(i) + 0.5, 9.0 + f64::from(i % 7))]);
+    let comb: Vec<_> = [p(499.5, 0.0), p(0.0, 0.0)].into_iter().chain(teeth).rev().collect();
+    assert!(covers(&comb, &triangulate(&comb).unwrap()));
+}
+
+#[test]
+fn a_convex_polygon_may_have_any_number_of_corners_and_a_jagged_one_many() {
+    let round = star(&vec![1.0; 100_000], Vector3::X, 0.0);
+    assert_eq!(triangulate(&round).unwrap().len(), 99_998);
+    let jagged: Vec<f64> = (0..8192).map(|i| if i % 2 == 0 { 1.0 } else { 0.9 }).collect();
+    let corners = star(&jagged, Vector3::X, 0.0);
+    assert!(covers(&corners, &triangulate(&corners).unwrap()));
+}
+
+/// What fuzzing found: the same few corners over and over.
+#[test]
+fn a_polygon_that_crosses_itself_everywhere_ends_soon() {
+    let cube = |i: usize| Point3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2 & 1) as f64 * 0.5);
+    let mut state = 1u32;
+    let corners: Vec<_> = (0..3000)
+        .map(|_| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            cube((state >> 24) as usize % 8)
+        })
+        .collect();
+    let mut triangulator = Triangulator::default();
+    let mut triangles = Vec::new();
+    triangulator.triangulate(corners.iter().map(|p| p.to_array()), &mut triangles).unwrap();
+    assert!(triangulator.work < (WORK_PER_SQUARE + 1) * 3000 * 3000);
+}
+
+#[test]
+fn too_much_work_for_one_file_is_refused() {
+    let jagged: Vec<f64> = (0..4096).map(|i| if i % 2 == 0 { 1.0 } else { 0.9 }).collect();
+    let corners = star(&jagged, Vector3::X, 0.0);
+    let mut triangulator = Triangulator { work: BASE_WORK + 10_000_000, ..Triangulator::default() };
+    let refused = triangulator.triangulate(corners.iter().map(|p| p.to_array()), &mut Vec::new());
+    assert_eq!(refused, Err(TooComplex));
 }

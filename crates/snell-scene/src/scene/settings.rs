@@ -15,7 +15,8 @@ pub struct Settings {
     pub antialiasing: Antialiasing,
     /// What blocks light.
     pub shadows: Shadows,
-    /// How many wavelength bands white light splits into at a dispersive surface.
+    /// How many wavelength bands white light splits into at a dispersive surface, in each sample of a pixel; the samples of
+    /// one pixel split it at different places.
     pub bands: u32,
     /// From scene-linear colour to display colour.
     pub tone: Tone,
@@ -34,7 +35,7 @@ impl Default for Settings {
             min_weight: 1.0 / 1024.0,
             antialiasing: Antialiasing::Adaptive,
             shadows: Shadows::Filtered,
-            bands: 16,
+            bands: 8,
             tone: Tone::None,
             exposure: 0.0,
             pixel_grid: PixelGrid::Centers,

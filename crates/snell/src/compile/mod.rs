@@ -88,7 +88,7 @@ impl CompiledScene {
         let mut materials: Vec<Material> =
             scene.materials.iter().map(|material| Material::new(material, &textures)).collect();
         materials.push(Material::unspecified());
-        let Some((geometry, object_names)) = objects::compile(scene, &materials, &mut diagnostics) else {
+        let Some((geometry, object_names)) = objects::compile(scene, &materials, &textures, &mut diagnostics) else {
             return Err(CompileError { diagnostics });
         };
         Ok(Self {

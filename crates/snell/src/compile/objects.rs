@@ -11,6 +11,7 @@ use crate::geometry::{Attributes, Geometry, NONE, ObjectSpace, Placement, Primit
 use crate::material::Material;
 use crate::shape::Shape;
 use crate::shape::triangle_mesh::TriangleMesh;
+use crate::texture::Textures;
 
 /// A prototype of no more primitives than this is copied where it stands: finding them in a hierarchy of their own would
 /// cost more than the copies.
@@ -23,6 +24,7 @@ const MAX_PRIMITIVES: u64 = 20_000_000;
 pub fn compile(
     scene: &Scene,
     materials: &[Material],
+    textures: &Textures,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Option<(Geometry, Vec<String>)> {
     let descriptions: Vec<&scene::Mesh> = scene.meshes.iter().collect();
@@ -59,10 +61,10 @@ pub fn compile(
     let Compiler { prototypes, solids, names, .. } = compiler;
     let mesh_materials =
         scene.meshes.iter().map(|mesh| mesh.materials.iter().map(|id| id.index() as u32).collect()).collect();
-    let textured = materials.iter().map(Material::is_textured).collect();
+    let spaces = materials.iter().map(|material| material.spaces(textures)).collect();
     let default_material = materials.len() as u32 - 1;
     let geometry =
-        Geometry { world, prototypes, meshes, mesh_materials, solids, transparent, textured, default_material };
+        Geometry { world, prototypes, meshes, mesh_materials, solids, transparent, spaces, default_material };
     Some((geometry, names))
 }
 
@@ -83,6 +85,7 @@ struct Compiler<'a> {
 struct Parts {
     bounded: Vec<(Bounds3, Primitive, Attributes)>,
     unbounded: Vec<(Primitive, Attributes)>,
+    shapes: Vec<Shape>,
     placements: Vec<Placement>,
     object_spaces: Vec<ObjectSpace>,
 }
@@ -144,7 +147,11 @@ impl Compiler<'_> {
         };
         let bounds = shape.bounds();
         let bounds = if placement == NONE { bounds } else { placed_bounds(&space_from_object, &bounds) };
-        self.push(parts, bounds, Primitive::Shape { shape, placement }, attributes, object);
+        let primitive = match shape {
+            Shape::Sphere(sphere) if placement == NONE => Primitive::Sphere(sphere),
+            shape => Primitive::Shape { shape: parts.add_shape(shape), placement },
+        };
+        self.push(parts, bounds, primitive, attributes, object);
     }
 
     fn add_mesh(&mut self, object: &Object, mesh: Id<scene::Mesh>, context: Context, parts: &mut Parts) {
@@ -324,6 +331,11 @@ impl Compiler<'_> {
 }
 
 impl Parts {
+    fn add_shape(&mut self, shape: Shape) -> u32 {
+        self.shapes.push(shape);
+        self.shapes.len() as u32 - 1
+    }
+
     fn add_placement(&mut self, space_from_object: Transform) -> u32 {
         self.placements.push(Placement::new(space_from_object));
         self.placements.len() as u32 - 1
@@ -348,8 +360,8 @@ impl Parts {
             attributes.push(attribute);
         }
         let bvh = Bvh::build(&bounds)?;
-        let Self { placements, object_spaces, .. } = self;
-        Ok(Space { primitives, attributes, bounds, placements, object_spaces, bvh })
+        let Self { shapes, placements, object_spaces, .. } = self;
+        Ok(Space { primitives, attributes, bounds, shapes, placements, object_spaces, bvh })
     }
 }
 

@@ -4,9 +4,9 @@ use std::ops::ControlFlow;
 
 use snell_math::Ray;
 
-use crate::accel::Candidate;
+use crate::shape::Shape;
 
-use super::space::{NONE, Primitive, Space};
+use super::space::{Attributes, NONE, Primitive, Space};
 use super::{Geometry, Hit, LocalHit, QueryScratch};
 
 impl Geometry {
@@ -16,71 +16,102 @@ impl Geometry {
             Primitive::Instance { prototype, placement, .. } => {
                 let space = &self.prototypes[*prototype as usize];
                 let ray = self.world.placements[*placement as usize].to_local(ray);
-                space.any(&ray, distance, |_, primitive| {
-                    self.intersect_primitive(space, primitive, &ray, 0.0, distance, scratch).is_some()
-                })
+                space.any(&ray, distance, |_, primitive| self.is_met(space, primitive, &ray, distance, scratch))
             }
-            primitive => self.intersect_primitive(&self.world, primitive, ray, 0.0, distance, scratch).is_some(),
+            primitive => self.is_met(&self.world, primitive, ray, distance, scratch),
         })
     }
 
     /// Gathers every meeting with a transparent surface with 0 < t < `distance`, in no particular order. True, and then the
     /// list is not complete, where an opaque one is in the way.
     pub fn gather_blockers(&self, ray: &Ray, distance: f64, hits: &mut Vec<Hit>, scratch: &mut QueryScratch) -> bool {
-        self.world.any(ray, distance, |index, primitive| match primitive {
-            Primitive::Instance { prototype, placement, material } => {
+        self.world.any(ray, distance, |index, primitive| {
+            if let Primitive::Instance { prototype, placement, material } = primitive {
                 let space = &self.prototypes[*prototype as usize];
                 let ray = self.world.placements[*placement as usize].to_local(ray);
-                space.any(&ray, distance, |inner, primitive| {
-                    let mut keep = |local: LocalHit| hits.push(Hit { t: local.t(), primitive: index, inner, local });
-                    self.blocks(space, inner, primitive, *material, &ray, distance, scratch, &mut keep)
-                })
+                return space.any(&ray, distance, |inner, primitive| {
+                    let keep = |LocalHit { t, place }| hits.push(Hit { t, primitive: index, inner, place });
+                    let attributes = &space.attributes[inner as usize];
+                    if attributes.is_opaque {
+                        self.is_met(space, primitive, &ray, distance, scratch)
+                    } else {
+                        self.blocks(space, attributes, primitive, *material, &ray, distance, scratch, keep)
+                    }
+                });
             }
-            primitive => {
-                let mut keep = |local: LocalHit| hits.push(Hit { t: local.t(), primitive: index, inner: NONE, local });
-                self.blocks(&self.world, index, primitive, NONE, ray, distance, scratch, &mut keep)
+            let attributes = &self.world.attributes[index as usize];
+            if attributes.is_opaque {
+                return self.is_met(&self.world, primitive, ray, distance, scratch);
             }
+            let keep = |LocalHit { t, place }| hits.push(Hit { t, primitive: index, inner: NONE, place });
+            self.blocks(&self.world, attributes, primitive, NONE, ray, distance, scratch, keep)
         })
     }
 
-    /// Whether one primitive blocks all light; gives its transparent surfaces on the way to `keep`.
+    /// Whether a ray, given in the primitive's space, meets one primitive that is no instance with 0 < t < `distance`.
+    #[inline]
+    fn is_met(
+        &self,
+        space: &Space,
+        primitive: &Primitive,
+        ray: &Ray,
+        distance: f64,
+        scratch: &mut QueryScratch,
+    ) -> bool {
+        match primitive {
+            Primitive::Sphere(sphere) => sphere.intersect(ray, 0.0, distance).is_some(),
+            Primitive::Shape { shape, placement: NONE } if let Shape::Plane(plane) = &space.shapes[*shape as usize] => {
+                plane.intersect(ray, 0.0, distance).is_some()
+            }
+            primitive => self.intersect_between(space, primitive, ray, 0.0, distance, scratch).is_some(),
+        }
+    }
+
+    /// Whether one primitive, perhaps transparent, blocks all light; gives its transparent surfaces on the way to `keep`.
     #[expect(clippy::too_many_arguments, reason = "a private step of the function above")]
+    #[inline]
     fn blocks(
         &self,
         space: &Space,
-        index: u32,
+        attributes: &Attributes,
         primitive: &Primitive,
         inherited: u32,
         ray: &Ray,
         distance: f64,
         scratch: &mut QueryScratch,
-        keep: &mut impl FnMut(LocalHit),
+        mut keep: impl FnMut(LocalHit),
     ) -> bool {
-        let attributes = &space.attributes[index as usize];
-        if attributes.is_opaque {
-            return self.intersect_primitive(space, primitive, ray, 0.0, distance, scratch).is_some();
-        }
         let mut visit = |local: LocalHit| {
-            let material = self.material_of(primitive, attributes, inherited, &local);
+            let material = self.material_of(primitive, attributes, inherited, local.place);
             if !self.transparent[material as usize] {
                 return ControlFlow::Break(());
             }
             keep(local);
             ControlFlow::Continue(())
         };
-        if let Primitive::Mesh { mesh, .. } = primitive {
-            let carried = space.placement(primitive).map_or(*ray, |placement| placement.to_local(ray));
-            let mesh = &self.meshes[*mesh as usize];
-            return mesh.for_each_hit(&carried, 0.0, distance, |hit| visit(LocalHit::Mesh(hit))).is_break();
-        }
-        // The others have few surfaces: from one to the next.
-        let mut t_min = 0.0;
-        while let Some(local) = self.intersect_primitive(space, primitive, ray, t_min, distance, scratch) {
-            if visit(local).is_break() {
-                return true;
+        match primitive {
+            Primitive::Sphere(sphere) => sphere
+                .hits_before(ray, distance)
+                .into_iter()
+                .flatten()
+                .try_for_each(|hit| visit(LocalHit::from(hit)))
+                .is_break(),
+            Primitive::Mesh { mesh, .. } => {
+                let carried = space.placement(primitive).map_or(*ray, |placement| placement.to_local(ray));
+                let mesh = &self.meshes[*mesh as usize];
+                mesh.for_each_hit(&carried, 0.0, distance, |hit| visit(LocalHit::from(hit))).is_break()
             }
-            t_min = local.t();
+            // The others have few surfaces: from one to the next.
+            _ => {
+                let mut t_min = 0.0;
+                while let Some(local) = self.intersect_between(space, primitive, ray, t_min, distance, scratch) {
+                    if visit(local).is_break() {
+                        return true;
+                    }
+                    t_min = local.t;
+                }
+                false
+            }
         }
-        false
     }
 }

@@ -16,9 +16,10 @@ pub(crate) use space::{Attributes, NONE, ObjectSpace, Primitive, Space};
 use crate::accel::Candidate;
 use crate::csg::{CsgHit, CsgScratch, CsgSolid};
 use crate::interaction::{SolidId, SurfaceInteraction};
-use crate::shape::ShapeHit;
 use crate::shape::triangle_mesh::{MeshHit, TriangleMesh};
+use crate::shape::{Shape, ShapeHit};
 use crate::task::RayTask;
+use crate::texture::Spaces;
 
 /// All geometry of a compiled scene; never written to after it was built.
 #[derive(Debug)]
@@ -31,8 +32,8 @@ pub struct Geometry {
     pub(crate) solids: Vec<CsgSolid>,
     /// For each material, whether light goes through it.
     pub(crate) transparent: Vec<bool>,
-    /// For each material, whether it asks where on its object it is.
-    pub(crate) textured: Vec<bool>,
+    /// For each material, which coordinates of a hit it looks at.
+    pub(crate) spaces: Vec<Spaces>,
     /// What objects without a material have.
     pub(crate) default_material: u32,
 }
@@ -46,15 +47,32 @@ pub struct Hit {
     primitive: u32,
     /// The primitive of the prototype, where that of the world is an instance; else [`NONE`].
     inner: u32,
-    local: LocalHit,
+    place: LocalPlace,
 }
 
-/// Where on its primitive a hit is.
+/// Where on its primitive a hit is: no more than it takes to work out the rest, since very many are found and few are kept.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum LocalHit {
-    Shape(ShapeHit),
-    Mesh(MeshHit),
-    Solid(CsgHit),
+pub(crate) struct LocalPlace {
+    /// The part of a shape, also where that is a solid's leaf; of a mesh the triangle.
+    part: u32,
+    /// Of a solid what [`CsgHit`] says; else 0 and false.
+    leaf: u32,
+    flipped: bool,
+    entering: bool,
+}
+
+impl LocalPlace {
+    #[inline]
+    fn of_part(part: u32) -> Self {
+        Self { part, leaf: 0, flipped: false, entering: false }
+    }
+}
+
+/// A hit within one primitive.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LocalHit {
+    t: f64,
+    place: LocalPlace,
 }
 
 /// A hit within one primitive of the world.
@@ -64,18 +82,37 @@ struct InnerHit {
 }
 
 impl Candidate for InnerHit {
+    #[inline]
     fn t(&self) -> f64 {
-        self.local.t()
+        self.local.t
     }
 }
 
 impl Candidate for LocalHit {
+    #[inline]
     fn t(&self) -> f64 {
-        match self {
-            Self::Shape(hit) => hit.t,
-            Self::Mesh(hit) => hit.t,
-            Self::Solid(hit) => hit.t,
-        }
+        self.t
+    }
+}
+
+impl From<ShapeHit> for LocalHit {
+    #[inline]
+    fn from(ShapeHit { t, part }: ShapeHit) -> Self {
+        Self { t, place: LocalPlace::of_part(part) }
+    }
+}
+
+impl From<MeshHit> for LocalHit {
+    #[inline]
+    fn from(MeshHit { t, triangle, .. }: MeshHit) -> Self {
+        Self { t, place: LocalPlace::of_part(triangle) }
+    }
+}
+
+impl From<CsgHit> for LocalHit {
+    #[inline]
+    fn from(CsgHit { t, leaf, part, flipped, entering }: CsgHit) -> Self {
+        Self { t, place: LocalPlace { part, leaf, flipped, entering } }
     }
 }
 
@@ -100,28 +137,62 @@ impl Geometry {
     }
 
     /// The nearest hit with 0 < t ≤ `t_max`. Of several at the same distance, the one of the lowest primitive.
+    #[inline]
     pub fn intersect(&self, ray: &Ray, t_max: f64, scratch: &mut QueryScratch) -> Option<Hit> {
-        let found = self.world.nearest(ray, t_max, |_, primitive, t_max| match primitive {
+        let found = self.world.nearest(ray, t_max, |primitive, t_max| match primitive {
             Primitive::Instance { prototype, placement, .. } => {
-                let local_ray = self.world.placements[*placement as usize].to_local(ray);
-                let space = &self.prototypes[*prototype as usize];
-                let test = |_, primitive: &Primitive, t_max| {
-                    self.intersect_primitive(space, primitive, &local_ray, 0.0, t_max, scratch)
-                };
-                let (inner, local) = space.nearest(&local_ray, t_max, test)?;
-                Some(InnerHit { inner, local })
+                self.intersect_instance(*prototype, *placement, ray, t_max, scratch)
             }
             primitive => {
-                let local = self.intersect_primitive(&self.world, primitive, ray, 0.0, t_max, scratch)?;
+                let local = self.intersect_primitive(&self.world, primitive, ray, t_max, scratch)?;
                 Some(InnerHit { inner: NONE, local })
             }
         });
-        found.map(|(primitive, InnerHit { inner, local })| Hit { t: local.t(), primitive, inner, local })
+        found.map(|(primitive, InnerHit { inner, local })| Hit { t: local.t, primitive, inner, place: local.place })
     }
 
-    /// The nearest hit of a ray, given in the primitive's space, with one primitive that is no instance.
+    /// The nearest hit of a world ray with an instance.
+    #[inline(never)]
+    fn intersect_instance(
+        &self,
+        prototype: u32,
+        placement: u32,
+        ray: &Ray,
+        t_max: f64,
+        scratch: &mut QueryScratch,
+    ) -> Option<InnerHit> {
+        let ray = self.world.placements[placement as usize].to_local(ray);
+        let space = &self.prototypes[prototype as usize];
+        let test = |primitive: &Primitive, t_max| self.intersect_primitive(space, primitive, &ray, t_max, scratch);
+        space.nearest(&ray, t_max, test).map(|(inner, local)| InnerHit { inner, local })
+    }
+
+    /// The nearest hit with t > 0 of a ray, given in the primitive's space, with one primitive that is no instance. One beyond
+    /// `t_max` may be returned or not.
     #[inline]
     fn intersect_primitive(
+        &self,
+        space: &Space,
+        primitive: &Primitive,
+        ray: &Ray,
+        t_max: f64,
+        scratch: &mut QueryScratch,
+    ) -> Option<LocalHit> {
+        match primitive {
+            Primitive::Sphere(sphere) => sphere.intersect(ray, 0.0, f64::INFINITY).map(LocalHit::from),
+            // A floor: the one shape that nearly every ray is tested with.
+            Primitive::Shape { shape, placement: NONE } if let Shape::Plane(plane) = &space.shapes[*shape as usize] => {
+                plane.intersect(ray, 0.0, f64::INFINITY).map(LocalHit::from)
+            }
+            // What is asked for is the nearest below, and those at `t_max` count.
+            primitive => self.intersect_between(space, primitive, ray, 0.0, t_max.next_up(), scratch),
+        }
+    }
+
+    /// The nearest hit with `t_min < t < t_max`, or a little above, of a ray, given in the primitive's space, with one
+    /// primitive that is no instance.
+    #[inline(never)]
+    fn intersect_between(
         &self,
         space: &Space,
         primitive: &Primitive,
@@ -139,12 +210,15 @@ impl Geometry {
             }
         };
         match primitive {
-            Primitive::Shape { shape, .. } => shape.intersect(ray, t_min, t_max).map(LocalHit::Shape),
+            Primitive::Sphere(sphere) => sphere.intersect(ray, t_min, t_max).map(LocalHit::from),
+            Primitive::Shape { shape, .. } => {
+                space.shapes[*shape as usize].intersect(ray, t_min, t_max).map(LocalHit::from)
+            }
             Primitive::Mesh { mesh, .. } => {
-                self.meshes[*mesh as usize].intersect(ray, t_min, t_max).map(LocalHit::Mesh)
+                self.meshes[*mesh as usize].intersect(ray, t_min, t_max).map(LocalHit::from)
             }
             Primitive::Solid { solid, .. } => {
-                self.solids[*solid as usize].intersect(ray, t_min, t_max, &mut scratch.csg).map(LocalHit::Solid)
+                self.solids[*solid as usize].intersect(ray, t_min, t_max, &mut scratch.csg).map(LocalHit::from)
             }
             // Prototypes are built flat.
             Primitive::Instance { .. } => None,
@@ -152,10 +226,16 @@ impl Geometry {
     }
 
     /// Everything about a hit of a world ray that shading needs.
+    #[inline]
     pub fn interaction(&self, ray: &Ray, hit: &Hit) -> SurfaceInteraction {
         if hit.inner == NONE {
             return self.interaction_in(&self.world, ray, hit, hit.primitive, NONE);
         }
+        self.interaction_of_instance(ray, hit)
+    }
+
+    #[inline(never)]
+    fn interaction_of_instance(&self, ray: &Ray, hit: &Hit) -> SurfaceInteraction {
         let Primitive::Instance { prototype, placement, material } = &self.world.primitives[hit.primitive as usize]
         else {
             unreachable!("only hits of instances have an inner primitive");
@@ -168,6 +248,7 @@ impl Geometry {
     }
 
     /// The interaction in the space that the primitive and the ray are in.
+    #[inline]
     fn interaction_in(
         &self,
         space: &Space,
@@ -179,21 +260,37 @@ impl Geometry {
         let primitive = &space.primitives[index as usize];
         let attributes = &space.attributes[index as usize];
         let placement = space.placement(primitive);
-        let local_ray = placement.map_or(*ray, |placement| placement.to_local(ray));
-        let mut vertex_color = None;
-        let surface = match (primitive, &hit.local) {
-            (Primitive::Shape { shape, .. }, LocalHit::Shape(local)) => shape.surface_geometry(&local_ray, *local),
-            (Primitive::Mesh { mesh, .. }, LocalHit::Mesh(local)) => {
-                let mesh = &self.meshes[*mesh as usize];
-                vertex_color = mesh.color(local);
-                mesh.surface(&local_ray, local)
+        let carried;
+        let local_ray = match placement {
+            None => ray,
+            Some(placement) => {
+                carried = placement.to_local(ray);
+                &carried
             }
-            (Primitive::Solid { solid, .. }, LocalHit::Solid(local)) => {
-                self.solids[*solid as usize].surface(&local_ray, *local)
-            }
-            _ => unreachable!("a hit is of its primitive's kind"),
         };
-        let material = self.material_of(primitive, attributes, inherited_material, &hit.local);
+        let mut vertex_color = None;
+        let surface = match primitive {
+            Primitive::Sphere(sphere) => sphere.surface_geometry(local_ray, ShapeHit { t: hit.t, part: 0 }),
+            Primitive::Shape { shape, .. } => {
+                let hit = ShapeHit { t: hit.t, part: hit.place.part };
+                match &space.shapes[*shape as usize] {
+                    Shape::Plane(plane) => plane.surface_geometry(local_ray, hit),
+                    shape => shape.surface_geometry(local_ray, hit),
+                }
+            }
+            Primitive::Mesh { mesh, .. } => {
+                let mesh = &self.meshes[*mesh as usize];
+                let local = mesh.hit(local_ray, hit.place.part, hit.t);
+                vertex_color = mesh.color(&local);
+                mesh.surface(local_ray, &local)
+            }
+            Primitive::Solid { solid, .. } => {
+                let LocalPlace { part, leaf, flipped, entering } = hit.place;
+                self.solids[*solid as usize].surface(local_ray, CsgHit { t: hit.t, leaf, part, flipped, entering })
+            }
+            Primitive::Instance { .. } => unreachable!("an instance is no surface"),
+        };
+        let material = self.material_of(primitive, attributes, inherited_material, hit.place);
         let mut interaction = SurfaceInteraction {
             t: hit.t,
             point: surface.point,
@@ -208,8 +305,9 @@ impl Geometry {
             object: attributes.object,
             solid: SolidId(u64::from(hit.primitive) << 32 | u64::from(hit.inner)),
         };
-        if self.textured[material as usize] {
-            space.locate_on_object(primitive, attributes, &hit.local, &mut interaction);
+        let Spaces { object, uv, .. } = self.spaces[material as usize];
+        if object || uv {
+            space.locate_on_object(primitive, attributes, uv.then_some(hit.place.part), &mut interaction);
         }
         if let Some(placement) = placement {
             placement.carry_out(&mut interaction);
@@ -218,22 +316,25 @@ impl Geometry {
     }
 
     /// Which material a hit has: its part's own, the object's, the mesh file's, that of the instance, or the one for all others.
-    fn material_of(&self, primitive: &Primitive, attributes: &Attributes, inherited: u32, local: &LocalHit) -> u32 {
-        let of_part = match (primitive, local) {
-            (Primitive::Solid { solid, .. }, LocalHit::Solid(hit)) => self.solids[*solid as usize].tag(hit.leaf),
-            _ => NONE,
-        };
-        let of_file = match (primitive, local) {
-            (Primitive::Mesh { mesh, .. }, LocalHit::Mesh(hit)) if attributes.material == NONE => {
-                let number = self.meshes[*mesh as usize].material_index(hit.triangle);
-                self.mesh_materials[*mesh as usize].get(usize::from(number)).copied().unwrap_or(NONE)
+    #[inline]
+    fn material_of(&self, primitive: &Primitive, attributes: &Attributes, inherited: u32, place: LocalPlace) -> u32 {
+        if let Primitive::Solid { solid, .. } = primitive {
+            let of_part = self.solids[*solid as usize].tag(place.leaf);
+            if of_part != NONE {
+                return of_part;
             }
-            _ => NONE,
-        };
-        [of_part, attributes.material, of_file, inherited]
-            .into_iter()
-            .find(|&material| material != NONE)
-            .unwrap_or(self.default_material)
+        }
+        if attributes.material != NONE {
+            return attributes.material;
+        }
+        if let Primitive::Mesh { mesh, .. } = primitive {
+            let number = self.meshes[*mesh as usize].material_index(place.part);
+            let materials = &self.mesh_materials[*mesh as usize];
+            if let Some(&of_file) = materials.get(usize::from(number)).filter(|&&of_file| of_file != NONE) {
+                return of_file;
+            }
+        }
+        if inherited != NONE { inherited } else { self.default_material }
     }
 
     /// The transparent bodies that a world point is in, the outermost first, each with its material.
@@ -277,7 +378,9 @@ impl Geometry {
         }
         let local = space.placement(primitive).map_or(point, |placement| placement.point_to_local(point));
         let contains = match primitive {
-            Primitive::Shape { shape, .. } => shape.is_solid() && shape.contains(local),
+            Primitive::Sphere(_) | Primitive::Shape { .. } => {
+                space.shape(primitive).is_some_and(|shape| shape.is_solid() && shape.contains(local))
+            }
             Primitive::Mesh { mesh, .. } => self.meshes[*mesh as usize].contains(local),
             Primitive::Solid { solid, .. } => self.solids[*solid as usize].contains(local),
             Primitive::Instance { .. } => false,
@@ -287,8 +390,8 @@ impl Geometry {
         }
         // Its material is the one of the boundary that is met on the way out.
         let ray = Ray::new(point, Vector3::new(0.48, 0.6, 0.64));
-        let local = self.intersect_primitive(space, primitive, &ray, 0.0, f64::INFINITY, scratch)?;
-        let material = self.material_of(primitive, &space.attributes[index as usize], inherited, &local);
+        let local = self.intersect_between(space, primitive, &ray, 0.0, f64::INFINITY, scratch)?;
+        let material = self.material_of(primitive, &space.attributes[index as usize], inherited, local.place);
         self.transparent[material as usize].then_some((bounds.half_area(), material))
     }
 }

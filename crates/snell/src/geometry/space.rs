@@ -2,11 +2,10 @@
 
 use snell_math::{Bounds3, Normal3, Point3, Ray, Vector3};
 
-use super::LocalHit;
 use super::placed::Placement;
 use crate::accel::{Bvh, Candidate};
 use crate::interaction::SurfaceInteraction;
-use crate::shape::Shape;
+use crate::shape::{Shape, Sphere};
 use crate::texture::RELATIVE_INSET;
 
 /// No such place: no placement, no material, no inner primitive.
@@ -15,10 +14,14 @@ pub const NONE: u32 = u32::MAX;
 /// Up to so many primitives of a space are tested one by one.
 const HANDFUL: usize = 4;
 
-/// Something that a ray can meet. `placement` is a place in its space's list, or [`NONE`] where it stands in the space as it is.
+/// Something that a ray can meet: a place in one of the lists of its space or of the geometry. `placement` is a place too, or
+/// [`NONE`] where it stands in its space as it is.
+///
+/// Spheres that do so are kept here themselves: scenes of very many primitives are most often made of them.
 #[derive(Debug)]
 pub enum Primitive {
-    Shape { shape: Shape, placement: u32 },
+    Sphere(Sphere),
+    Shape { shape: u32, placement: u32 },
     Mesh { mesh: u32, placement: u32 },
     Solid { solid: u32, placement: u32 },
     Instance { prototype: u32, placement: u32, material: u32 },
@@ -55,6 +58,8 @@ pub struct Space {
     pub primitives: Vec<Primitive>,
     pub attributes: Vec<Attributes>,
     pub bounds: Vec<Bounds3>,
+    /// The shapes that primitives refer to.
+    pub shapes: Vec<Shape>,
     pub placements: Vec<Placement>,
     pub object_spaces: Vec<ObjectSpace>,
     /// Over the first primitives, as many as `bounds` has.
@@ -65,39 +70,50 @@ impl Space {
     /// The placement of a primitive that has one.
     #[inline]
     pub fn placement(&self, primitive: &Primitive) -> Option<&Placement> {
-        let (Primitive::Shape { placement, .. }
-        | Primitive::Mesh { placement, .. }
-        | Primitive::Solid { placement, .. }
-        | Primitive::Instance { placement, .. }) = primitive;
-        if *placement == NONE { None } else { Some(&self.placements[*placement as usize]) }
+        match primitive {
+            Primitive::Sphere(_) => None,
+            Primitive::Shape { placement, .. }
+            | Primitive::Mesh { placement, .. }
+            | Primitive::Solid { placement, .. }
+            | Primitive::Instance { placement, .. } => self.placements.get(*placement as usize),
+        }
     }
 
-    /// Fills in where on its object an interaction is, given in this space for shapes that were brought here, and else in the
+    /// The shape that a primitive is, in its own space.
+    #[inline]
+    pub fn shape(&self, primitive: &Primitive) -> Option<Shape> {
+        match primitive {
+            Primitive::Sphere(sphere) => Some(Shape::Sphere(*sphere)),
+            Primitive::Shape { shape, .. } => Some(self.shapes[*shape as usize]),
+            _ => None,
+        }
+    }
+
+    /// Fills in where on its object an interaction is, and (u, v) where the part of the primitive is given: given in this space for shapes that were brought here, and else in the
     /// primitive's own, which is the object's.
     pub fn locate_on_object(
         &self,
         primitive: &Primitive,
         attributes: &Attributes,
-        local: &LocalHit,
+        part: Option<u32>,
         interaction: &mut SurfaceInteraction,
     ) {
         let SurfaceInteraction { point, geometric_normal: normal, error, .. } = *interaction;
-        let (object_point, shape) = match (primitive, self.object_spaces.get(attributes.object_space as usize)) {
-            (_, Some(ObjectSpace { placement, shape })) => {
-                let object_point = placement.point_to_local(point);
+        let shape = match self.object_spaces.get(attributes.object_space as usize) {
+            Some(ObjectSpace { placement, shape }) => {
+                interaction.object_point = placement.point_to_local(point);
                 let normal = placement.normal_to_local(normal);
-                interaction.object_inside = inside(object_point, normal, placement.error_to_local(error));
-                (object_point, Some(shape))
+                let error = placement.error_to_local(error);
+                interaction.object_inside = inside(interaction.object_point, normal, error);
+                part.map(|part| (*shape, part))
             }
-            (primitive, None) => {
+            None => {
                 interaction.object_inside = inside(point, normal, error);
-                let Primitive::Shape { shape, .. } = primitive else { return };
-                (point, Some(shape))
+                part.and_then(|part| Some((self.shape(primitive)?, part)))
             }
         };
-        interaction.object_point = object_point;
-        if let (Some(shape), LocalHit::Shape(hit)) = (shape, local) {
-            interaction.uv = shape.uv(object_point, hit.part);
+        if let Some((shape, part)) = shape {
+            interaction.uv = shape.uv(interaction.object_point, part);
         }
     }
 
@@ -115,30 +131,30 @@ impl Space {
     }
 
     /// The nearest hit of a ray up to `t_max`, and its primitive; of several at the same distance, that of the lowest primitive.
-    /// `test` is given a primitive and below which distance hits count.
+    /// `test` is given a primitive and a distance beyond which hits do not count; it may still return them.
     #[inline]
     pub fn nearest<H: Candidate>(
         &self,
         ray: &Ray,
         t_max: f64,
-        mut test: impl FnMut(u32, &Primitive, f64) -> Option<H>,
+        mut test: impl FnMut(&Primitive, f64) -> Option<H>,
     ) -> Option<(u32, H)> {
         let mut nearest = None;
         let mut limit = t_max;
         let first_alone = self.first_alone();
-        // The unbounded ones first, since a floor shortens the way through the rest; from the last to the first, and with
-        // limits just beyond the nearest, so that of equals the lowest stays.
-        for (index, primitive) in self.primitives.iter().enumerate().skip(first_alone).rev() {
-            if let Some(hit) = test(index as u32, primitive, limit.next_up()) {
+        // The unbounded ones before the rest, since a floor shortens the way through it.
+        for (primitive, index) in self.primitives[first_alone..].iter().zip(first_alone as u32..) {
+            if let Some(hit) = test(primitive, limit)
+                && (hit.t() < limit || hit.t() == limit && nearest.is_none())
+            {
                 limit = hit.t();
-                nearest = Some((index as u32, hit));
+                nearest = Some((index, hit));
             }
         }
         if first_alone == 0 {
             return nearest;
         }
-        let bounded =
-            self.bvh.closest(ray, limit, |index, limit| test(index, &self.primitives[index as usize], limit.next_up()));
+        let bounded = self.bvh.closest(ray, limit, |index, limit| test(&self.primitives[index as usize], limit));
         bounded.or(nearest)
     }
 

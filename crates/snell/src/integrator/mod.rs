@@ -1,5 +1,6 @@
 //! What happens where a ray meets the scene: one `shade`, one file, one algorithm.
 
+mod dispersion;
 mod scattering;
 mod sink;
 mod whitted;

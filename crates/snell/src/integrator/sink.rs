@@ -68,6 +68,17 @@ impl<O: Observer> Sink<'_, O> {
         self.observer.hit(task, interaction);
     }
 
+    /// Whether a question to a light that would add these terms is without consequence, and then counts it as asked. It is
+    /// where neither term adds anything, most often on glass outside of its highlight, unless somebody watches.
+    #[inline]
+    pub fn needs_no_answer(&mut self, diffuse: Rgb, specular: Rgb) -> bool {
+        let is_idle = !O::WATCHES && diffuse.is_black() && specular.is_black();
+        if is_idle {
+            self.statistics.shadow_rays += u64::from(self.rules.shadows != Shadows::None);
+        }
+        is_idle
+    }
+
     /// Asks how much of a light arrives; the answer is added to the sample after the generation.
     #[inline]
     pub fn ask(&mut self, question: ShadowQuestion) {

@@ -4,9 +4,10 @@
 //! the ambient term, then each light, then reflection, then refraction. World space; `wo` leads to the viewer, `wi` to a
 //! light, both leaving the surface.
 
-use snell_math::spectrum::Bands;
 use snell_math::{Normal3, Rgb, Vector3};
+use snell_scene::scene::Medium;
 
+use super::dispersion::Dispersion;
 use super::{Integrator, Sink, Spawn, scattering};
 use crate::camera::{Camera, Projection, Window};
 use crate::compile::CompiledScene;
@@ -21,31 +22,23 @@ use crate::texture::ViewProjection;
 /// Recursive ray tracing over lights without extent.
 #[derive(Clone, Debug)]
 pub struct Whitted {
-    bands: Bands,
-    /// For each material, its index of refraction in each band; empty where it does not disperse.
-    band_indices: Vec<Vec<f64>>,
+    dispersion: Dispersion,
     camera: Camera,
     view: ViewProjection,
 }
 
 impl Whitted {
-    /// For a scene seen by a camera, splitting white light into `bands` wavelength bands at dispersive surfaces.
+    /// For a scene seen by a camera, splitting white light into at most `bands` wavelength bands at
+    /// dispersive surfaces.
     pub fn new(scene: &CompiledScene, camera: &Camera, bands: u32) -> Self {
-        let bands = Bands::new(bands);
-        let indices = |material: &crate::material::Material| match &material.body {
-            Some(body) if body.ior.is_dispersive() => {
-                bands.iter().map(|band| body.ior.index(band.wavelength_nm)).collect()
-            }
-            _ => Vec::new(),
-        };
         let [u, v, w] = camera.axes();
         let Window { left, right, bottom, top } = camera.window();
         let view = match camera.projection() {
             Projection::Perspective => ViewProjection { u, v, w, left, right, bottom, top },
             Projection::Orthographic => ViewProjection::for_orthographic(u, v, w, (right - left) / (top - bottom)),
         };
-        let band_indices = scene.materials.iter().map(indices).collect();
-        Self { bands, band_indices, camera: camera.clone(), view }
+        let dispersion = Dispersion::new(scene, bands, camera.pixel_angle());
+        Self { dispersion, camera: camera.clone(), view }
     }
 
     /// What a ray sees that leaves the scene.
@@ -61,18 +54,24 @@ impl Whitted {
 
 impl Integrator for Whitted {
     fn shade<O: Observer>(&self, scene: &CompiledScene, task: &RayTask, hit: Option<&Hit>, out: &mut Sink<'_, O>) {
-        let mut task = *task;
         // What the body that the ray travels in does to it on the way.
-        let distance = hit.map_or(f64::INFINITY, |hit| hit.t);
-        self.travel(scene, &mut task, distance, out);
+        let weakened;
+        let task = match medium_around(scene, task, out) {
+            None => task,
+            Some(medium) => {
+                let distance = hit.map_or(f64::INFINITY, |hit| hit.t);
+                weakened = travel(scene, task, medium, distance, out);
+                &weakened
+            }
+        };
 
         let Some(hit) = hit else {
-            out.met(&task, None);
-            out.add(&task, Term::Background, self.background(scene, &task));
+            out.met(task, None);
+            out.add(task, Term::Background, self.background(scene, task));
             return;
         };
         let interaction = scene.interaction(&task.ray, hit);
-        out.met(&task, Some(&interaction));
+        out.met(task, Some(&interaction));
         let material = &scene.materials[interaction.material as usize];
         let bsdf = material.bsdf(&scene.textures, &interaction);
 
@@ -85,34 +84,22 @@ impl Integrator for Whitted {
         if let Some(crossing) = crossing
             && crossing.is_without_effect()
         {
-            out.pass(&task, interaction.spawn_ray(task.ray.direction), crossing.after);
+            out.pass(task, interaction.spawn_ray(task.ray.direction), crossing.after);
             return;
         }
 
         let wo = -task.ray.direction;
-        add_local_terms(scene, &task, &interaction, &bsdf, wo, out);
+        add_local_terms(scene, task, &interaction, &bsdf, wo, out);
         if !bsdf.mirror.is_black() {
-            spawn_reflected(&task, &interaction, wo, bsdf.mirror, out);
+            spawn_reflected(task, &interaction, wo, bsdf.mirror, out);
         }
         if let (Some(interface), Some(crossing)) = (bsdf.interface, crossing) {
-            self.spawn_at_interface(scene, &task, &interaction, wo, interface, crossing, out);
+            self.spawn_at_interface(scene, task, &interaction, wo, interface, crossing, out);
         }
     }
 }
 
 impl Whitted {
-    /// Absorbs and scatters over the stretch up to the hit.
-    fn travel<O: Observer>(&self, scene: &CompiledScene, task: &mut RayTask, distance: f64, out: &mut Sink<'_, O>) {
-        let Some(inside) = out.media.current(task.media) else { return };
-        let Some(body) = &scene.materials[inside.material as usize].body else { return };
-        if !body.medium.scattering.is_black() {
-            scattering::gather(scene, task, &body.medium, distance, out);
-        }
-        if !body.medium.is_clear() {
-            task.throughput *= beer_lambert(body.medium.absorption + body.medium.scattering, distance);
-        }
-    }
-
     /// Reflection and refraction at the boundary of a transparent body.
     #[expect(clippy::too_many_arguments, reason = "the parts of one hit; a struct of them would have this one user")]
     fn spawn_at_interface<O: Observer>(
@@ -126,18 +113,18 @@ impl Whitted {
         out: &mut Sink<'_, O>,
     ) {
         let boundary = Boundary { interaction, crossing, interface, wo, normal: consistent_normal(interaction, wo) };
-        let disperses = |inside: Inside| !self.band_indices[inside.material as usize].is_empty();
-        let splits = task.band.is_none() && [crossing.before, crossing.beyond].into_iter().flatten().any(disperses);
-        let mut reflected = Rgb::BLACK;
-        if splits {
+        let sides = [crossing.before, crossing.beyond];
+        let split = match task.band {
+            Some(_) => None,
+            None => self.dispersion.split(scene, sides, wo, boundary.normal, task.sequence),
+        };
+        let reflected = match split {
             // Each band for itself: the reflected shares come together again, since reflection does not disperse.
-            for (number, part) in self.bands.iter().enumerate() {
-                let band = Some(Band(number as u8));
-                reflected += part.weight * self.refract_band(scene, task, &boundary, band, part.weight, out);
-            }
-        } else {
-            reflected = self.refract_band(scene, task, &boundary, task.band, Rgb::WHITE, out);
-        }
+            Some(bands) => bands.fold(Rgb::BLACK, |sum, (band, weight)| {
+                sum + weight * self.refract_band(scene, task, &boundary, Some(band), weight, out)
+            }),
+            None => self.refract_band(scene, task, &boundary, task.band, Rgb::WHITE, out),
+        };
         spawn_reflected(task, interaction, wo, reflected, out);
     }
 
@@ -152,8 +139,8 @@ impl Whitted {
         out: &mut Sink<'_, O>,
     ) -> Rgb {
         let Boundary { interaction, crossing, wo, normal, .. } = *boundary;
-        let eta_before = self.index(scene, crossing.before, band);
-        let eta_beyond = self.index(scene, crossing.beyond, band);
+        let eta_before = self.dispersion.index(scene, crossing.before, band);
+        let eta_beyond = self.dispersion.index(scene, crossing.beyond, band);
         let direction = refract(wo, normal, eta_before / eta_beyond);
         let (reflect_share, transmit_share) = boundary.shares(eta_before, eta_beyond, direction.is_some());
         let Some(direction) = direction else {
@@ -172,17 +159,30 @@ impl Whitted {
         out.spawn(task, Spawn { kind: RayKind::Refracted, ray, weight, media: crossing.after, band });
         reflect_share
     }
+}
 
-    /// The index of refraction of a body in a band; at the D line where the ray carries all light; 1 outside of all.
-    fn index(&self, scene: &CompiledScene, inside: Option<Inside>, band: Option<Band>) -> f64 {
-        match (inside, band) {
-            (Some(inside), Some(Band(band))) => {
-                let indices = &self.band_indices[inside.material as usize];
-                indices.get(usize::from(band)).copied().unwrap_or_else(|| scene.index_d(Some(inside)))
-            }
-            (inside, _) => scene.index_d(inside),
-        }
+/// What the body that a ray travels in is filled with, where light does not pass it unchanged.
+#[inline]
+fn medium_around<'a, O>(scene: &'a CompiledScene, task: &RayTask, out: &Sink<'_, O>) -> Option<&'a Medium> {
+    let inside = out.media.current(task.media)?;
+    let body = scene.materials[inside.material as usize].body.as_ref()?;
+    (!body.medium.is_clear()).then_some(&body.medium)
+}
+
+/// Scatters over the stretch up to the hit, and gives the ray with what absorption leaves of it.
+#[inline(never)]
+fn travel<O: Observer>(
+    scene: &CompiledScene,
+    task: &RayTask,
+    medium: &Medium,
+    distance: f64,
+    out: &mut Sink<'_, O>,
+) -> RayTask {
+    if !medium.scattering.is_black() {
+        scattering::gather(scene, task, medium, distance, out);
     }
+    let left = beer_lambert(medium.absorption + medium.scattering, distance);
+    RayTask { throughput: task.throughput * left, ..*task }
 }
 
 /// A boundary as one ray meets it.
@@ -246,16 +246,17 @@ fn add_local_terms<O: Observer>(
         }
         let local = bsdf.reflect_light(normal, wo, wi);
         let weight = task.throughput * arriving.irradiance;
+        let (diffuse, specular) = (weight * local.diffuse, weight * local.specular);
+        if out.needs_no_answer(diffuse, specular) {
+            continue;
+        }
         let ray = interaction.spawn_ray(wi);
         // From where the ray really starts: the light may be as near as the offset.
         let distance = arriving.distance - (ray.origin - interaction.point).dot(wi);
         out.ask(ShadowQuestion {
             ray,
             distance,
-            terms: [
-                (Term::Diffuse(number as u32), weight * local.diffuse),
-                (Term::Specular(number as u32), weight * local.specular),
-            ],
+            terms: [(Term::Diffuse(number as u32), diffuse), (Term::Specular(number as u32), specular)],
             sample: task.sample,
             task: task.id,
             media: task.media,

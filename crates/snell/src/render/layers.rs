@@ -1,23 +1,13 @@
-//! What the centre of each pixel shows besides colour: depth, normal, object.
+//! What the centre of each pixel shows besides colour: depth, normal, object, as [`snell_image::Layers`] has them.
 
+use snell_image::{Image, Layers};
 use snell_math::{Ray, Vector3};
 
 use crate::camera::Camera;
 use crate::compile::CompiledScene;
 use crate::geometry::Hit;
 
-/// Per pixel, by the camera ray of the first sample, row 0 at the top.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Layers {
-    /// Distance from the eye along the gaze, world units; infinite where nothing is.
-    pub depth: Vec<f32>,
-    /// The shading normal, world space, on the viewer's side; zero where nothing is.
-    pub normal: Vec<[f32; 3]>,
-    /// The object, counted from 1 in the order of the scene; 0 where nothing is.
-    pub object: Vec<u32>,
-}
-
-/// The three of one pixel.
+/// What the camera ray of a pixel's first sample met.
 #[derive(Clone, Copy, Debug)]
 pub struct FirstHit {
     depth: f32,
@@ -26,8 +16,10 @@ pub struct FirstHit {
 }
 
 impl FirstHit {
+    const NOTHING: Self = Self { depth: f32::INFINITY, normal: [0.0; 3], object: 0 };
+
     pub fn new(scene: &CompiledScene, camera: &Camera, ray: &Ray, hit: Option<&Hit>) -> Self {
-        let Some(hit) = hit else { return Self { depth: f32::INFINITY, normal: [0.0; 3], object: 0 } };
+        let Some(hit) = hit else { return Self::NOTHING };
         let interaction = scene.interaction(ray, hit);
         let [_, _, back] = camera.axes();
         let depth = -(interaction.point - camera.eye()).dot(back);
@@ -36,15 +28,24 @@ impl FirstHit {
     }
 }
 
-impl Layers {
-    pub(super) fn new(width: u32, height: u32) -> Self {
-        let pixels = width as usize * height as usize;
-        Self { depth: vec![f32::INFINITY; pixels], normal: vec![[0.0; 3]; pixels], object: vec![0; pixels] }
+/// The first hits of a picture in the making, row 0 at the top.
+#[derive(Clone, Debug)]
+pub struct FirstHits(Image<FirstHit>);
+
+impl FirstHits {
+    pub fn new(width: u32, height: u32) -> Self {
+        Self(Image::filled(width, height, FirstHit::NOTHING))
     }
 
-    pub(super) fn set(&mut self, pixel: usize, first: FirstHit) {
-        self.depth[pixel] = first.depth;
-        self.normal[pixel] = first.normal;
-        self.object[pixel] = first.object;
+    pub fn set(&mut self, pixel: usize, first: FirstHit) {
+        self.0.pixels_mut()[pixel] = first;
+    }
+
+    pub fn into_layers(self) -> Layers {
+        Layers {
+            depth: Some(self.0.map(|first| first.depth)),
+            normal: Some(self.0.map(|first| first.normal)),
+            object: Some(self.0.map(|first| first.object)),
+        }
     }
 }

@@ -11,10 +11,9 @@ mod settings;
 use std::sync::Mutex;
 
 use rayon::prelude::*;
-use snell_image::Image;
-use snell_math::{Rgb, sampling};
+use snell_image::{Image, Layers};
+use snell_math::{Ray, Rgb, sampling};
 
-pub use layers::Layers;
 pub use settings::RenderSettings;
 
 use crate::camera::{Camera, CameraError};
@@ -22,8 +21,8 @@ use crate::compile::CompiledScene;
 use crate::film::{Film, PixelSum};
 use crate::integrator::{Integrator, Rules, Whitted};
 use crate::observe::{NoObserver, RayTree};
-use crate::render::adaptive::Contrast;
-use crate::render::layers::FirstHit;
+use crate::render::adaptive::{Contrast, Display, Range};
+use crate::render::layers::{FirstHit, FirstHits};
 use crate::statistics::Statistics;
 use crate::trace::{Scratch, Tracer};
 
@@ -124,11 +123,11 @@ pub fn explain(
     let integrator = Whitted::new(scene, &camera, settings.bands);
     let job = Job { scene, integrator: &integrator, camera: &camera, settings };
     let mut tree = RayTree::default();
-    let index = pixel[1] as usize * settings.width as usize + pixel[0] as usize;
     let mut scratch = Scratch::default();
-    let ray = job.camera_ray(index, sample);
+    let [dx, dy] = sampling::pixel_sample(sample);
+    let ray = camera.generate_ray(f64::from(pixel[0]) + dx, f64::from(pixel[1]) + dy);
     let far = camera.far_distance(&ray);
-    job.tracer().trace([ray], &mut scratch, &mut Statistics::default(), &mut tree, |_, _, hit| {
+    job.tracer().trace([(ray, sample)], &mut scratch, &mut Statistics::default(), &mut tree, |_, _, hit| {
         *hit = hit.filter(|hit| hit.t <= far);
     });
     Ok(tree)
@@ -142,11 +141,30 @@ struct Job<'a, I> {
     settings: &'a RenderSettings,
 }
 
+/// The samples that a pass takes in each of its pixels.
+struct Samples {
+    /// The first one's place in the sequence.
+    first: u32,
+    /// Where in the pixel they are.
+    places: Vec<[f64; 2]>,
+}
+
+impl Samples {
+    fn new(numbers: std::ops::Range<u32>) -> Self {
+        Self { first: numbers.start, places: numbers.map(sampling::pixel_sample).collect() }
+    }
+
+    /// Each one's place in the pixel and in the sequence.
+    fn iter(&self) -> impl Iterator<Item = ([f64; 2], u32)> {
+        self.places.iter().copied().zip(self.first..)
+    }
+}
+
 /// What the tiles have given so far.
 struct Gathered {
     film: Film,
     contrast: Option<Contrast>,
-    layers: Option<Layers>,
+    first_hits: Option<FirstHits>,
     statistics: Statistics,
 }
 
@@ -156,12 +174,13 @@ impl<I: Integrator> Job<'_, I> {
         let passes = self.settings.passes();
         let gathered = Mutex::new(Gathered {
             film: Film::new(width, height),
-            contrast: (passes.len() > 1).then(|| Contrast::new(width, height, self.settings)),
-            layers: self.settings.layers.then(|| Layers::new(width, height)),
+            contrast: self.settings.is_adaptive().then(|| Contrast::new(width, height)),
+            first_hits: self.settings.layers.then(|| FirstHits::new(width, height)),
             statistics: Statistics::default(),
         });
         let mut complete = true;
-        for (number, samples) in passes.iter().enumerate() {
+        for (number, samples) in passes.into_iter().enumerate() {
+            let samples = Samples::new(samples);
             let pixels = match number {
                 0 => None,
                 _ => lock(&gathered).contrast.as_ref().map(|contrast| contrast.unsettled(number)),
@@ -170,7 +189,7 @@ impl<I: Integrator> Job<'_, I> {
             progress.pass(number as u32, tiles.iter().map(|tile| tile.len() as u64).sum());
             tiles.par_iter().for_each_init(Scratch::default, |scratch, tile| {
                 if !progress.is_cancelled() {
-                    self.render_tile(tile, samples.clone(), scratch, &gathered, progress);
+                    self.render_tile(tile, &samples, scratch, &gathered, progress);
                 }
             });
             complete = !progress.is_cancelled();
@@ -178,48 +197,67 @@ impl<I: Integrator> Job<'_, I> {
                 break;
             }
         }
-        let Gathered { film, layers, statistics, .. } = gathered.into_inner().unwrap_or_else(|e| e.into_inner());
-        Rendering { image: film.develop(), layers, statistics, complete }
+        let Gathered { film, first_hits, statistics, .. } = gathered.into_inner().unwrap_or_else(|e| e.into_inner());
+        Rendering { image: film.develop(), layers: first_hits.map(FirstHits::into_layers), statistics, complete }
     }
 
     /// Takes the samples of a range of the sequence in each pixel of a tile.
     fn render_tile(
         &self,
         tile: &[u32],
-        samples: std::ops::Range<u32>,
+        samples: &Samples,
         scratch: &mut Scratch,
         gathered: &Mutex<Gathered>,
         progress: &dyn Progress,
     ) {
-        let per_pixel = samples.len();
+        let per_pixel = samples.places.len();
         let mut statistics = Statistics::default();
+        let display = self.settings.is_adaptive().then(|| Display::new(self.settings));
+        let mut sums: Vec<PixelSum> = Vec::new();
+        let mut ranges: Vec<Range> = Vec::new();
         let mut first_hits: Vec<FirstHit> = Vec::new();
         // As many pixels at once as keep the queues in the caches.
         for pixels in tile.chunks((MAX_QUEUE / per_pixel).max(1)) {
+            if progress.is_cancelled() {
+                break;
+            }
             let rays = pixels
                 .iter()
-                .flat_map(|&pixel| samples.clone().map(move |sample| self.camera_ray(pixel as usize, sample)));
+                .flat_map(|&pixel| samples.iter().map(move |(place, number)| (self.camera_ray(pixel, place), number)));
             let colors = self.tracer().trace(rays, scratch, &mut statistics, &mut NoObserver, |number, ray, hit| {
                 let far = self.camera.far_distance(ray);
-                *hit = hit.filter(|hit| hit.t <= far);
-                if self.settings.layers && samples.start == 0 && number % per_pixel == 0 {
+                if hit.is_some_and(|hit| hit.t > far) {
+                    *hit = None;
+                }
+                if self.settings.layers && samples.first == 0 && number % per_pixel == 0 {
                     first_hits.push(FirstHit::new(self.scene, self.camera, ray, hit.as_ref()));
                 }
             });
-            let mut gathered = lock(gathered);
-            for (&pixel, colors) in pixels.iter().zip(colors.chunks(per_pixel)) {
+            // All that can be done before the lock.
+            sums.clear();
+            sums.extend(colors.chunks(per_pixel).map(|colors| {
                 let mut sum = PixelSum::default();
                 for &color in colors {
                     statistics.nonfinite_samples += u64::from(!sum.add(color));
                 }
-                gathered.film.add(pixel as usize, &sum);
-                if let Some(contrast) = &mut gathered.contrast {
-                    contrast.add(pixel as usize, colors);
+                sum
+            }));
+            ranges.clear();
+            if let Some(display) = display {
+                ranges.extend(colors.chunks(per_pixel).map(|colors| display.range(colors)));
+            }
+            let mut gathered = lock(gathered);
+            for (&pixel, sum) in pixels.iter().zip(&sums) {
+                gathered.film.add(pixel as usize, sum);
+            }
+            if let Some(contrast) = &mut gathered.contrast {
+                for (&pixel, range) in pixels.iter().zip(&ranges) {
+                    contrast.add(pixel as usize, range);
                 }
             }
-            if let Some(layers) = &mut gathered.layers {
+            if let Some(all) = &mut gathered.first_hits {
                 for (&pixel, first) in pixels.iter().zip(first_hits.drain(..)) {
-                    layers.set(pixel as usize, first);
+                    all.set(pixel as usize, first);
                 }
             }
         }
@@ -227,11 +265,11 @@ impl<I: Integrator> Job<'_, I> {
         progress.advance(tile.len() as u64, statistics.rays());
     }
 
-    /// The ray of one sample of a pixel.
-    fn camera_ray(&self, pixel: usize, sample: u32) -> snell_math::Ray {
-        let width = self.settings.width as usize;
-        let [dx, dy] = sampling::pixel_sample(sample);
-        self.camera.generate_ray((pixel % width) as f64 + dx, (pixel / width) as f64 + dy)
+    /// The ray through a place in a pixel.
+    #[inline]
+    fn camera_ray(&self, pixel: u32, [dx, dy]: [f64; 2]) -> Ray {
+        let width = self.settings.width;
+        self.camera.generate_ray(f64::from(pixel % width) + dx, f64::from(pixel / width) + dy)
     }
 
     fn tracer(&self) -> Tracer<'_, I> {

@@ -78,6 +78,11 @@ impl RenderSettings {
         }
     }
 
+    /// Whether there are passes that depend on what the ones before have shown.
+    pub(super) fn is_adaptive(&self) -> bool {
+        self.antialiasing == Antialiasing::Adaptive
+    }
+
     /// Which samples of the sequence each pass takes; all pixels take part in the first.
     pub(super) fn passes(&self) -> Vec<Range<u32>> {
         let borders: &[u32] = match self.antialiasing {

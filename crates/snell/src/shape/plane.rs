@@ -44,7 +44,7 @@ impl Plane {
     /// is tested next) and of its coordinates. Directions are above the plane or not by the very product with the normal
     /// that intersection divides by, so they add nothing.
     #[inline]
-    pub(super) fn surface_geometry(&self, ray: &Ray, hit: ShapeHit) -> SurfacePoint {
+    pub(crate) fn surface_geometry(&self, ray: &Ray, hit: ShapeHit) -> SurfacePoint {
         let raw = ray.at(hit.t);
         let height = (raw - self.point).dot(self.normal);
         let point = raw - self.normal * height;

@@ -48,7 +48,37 @@ impl Sphere {
     /// See [`super::Shape::intersect`].
     #[inline]
     pub fn intersect(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<ShapeHit> {
+        if t_min >= 0.0 && self.is_surely_missed(ray) {
+            return None;
+        }
         self.span(ray)?.first_between(t_min, t_max)
+    }
+
+    /// Both places where a ray passes through the surface with 0 < t < `t_max`, the nearer one first.
+    #[inline]
+    pub(crate) fn hits_before(&self, ray: &Ray, t_max: f64) -> [Option<ShapeHit>; 2] {
+        if self.is_surely_missed(ray) {
+            return [None; 2];
+        }
+        let Some(Span { enter, leave }) = self.span(ray) else { return [None; 2] };
+        [enter, leave].map(|hit| (hit.t > 0.0 && hit.t < t_max).then_some(hit))
+    }
+
+    /// Whether [`Sphere::span`], without a division or a root, can be known to have no end with t > 0: most spheres that a
+    /// ray is tested with end here. Never true where it has one, not even by its own rounding.
+    #[inline]
+    fn is_surely_missed(&self, ray: &Ray) -> bool {
+        /// Well above the rounding errors of both sides and of the discriminant in `span`, which are less than 100 u.
+        const MARGIN: f64 = 1.0 / (1_u64 << 44) as f64;
+        let (f, d) = (self.center - ray.origin, ray.direction);
+        let (a, b, c) = (d.length_squared(), f.dot(d), f.length_squared());
+        let squared = self.radius * self.radius;
+        // From outside and away from it: the numerator and the sum that give both ends are what `span` computes.
+        let is_behind = b < 0.0 && c >= squared;
+        // The line's squared distance from the centre against the squared radius, both times a. Numbers so small or so
+        // large that they lose digits are left to `span`.
+        let (distance, reach) = (c * a - b * b, a * (squared + MARGIN * c));
+        is_behind || distance > reach && reach > 1e-280 && distance < f64::INFINITY
     }
 
     pub(super) fn crossings(&self, ray: &Ray, out: &mut Vec<Crossing>) {
@@ -60,7 +90,7 @@ impl Sphere {
     /// The direction of the hit from the centre is all that is taken from the ray, so errors of t only move the point
     /// along the surface. The error is counted in `rounding.rs`: the frame's roundings do not occur here.
     #[inline]
-    pub(super) fn surface_geometry(&self, ray: &Ray, hit: ShapeHit) -> SurfacePoint {
+    pub(crate) fn surface_geometry(&self, ray: &Ray, hit: ShapeHit) -> SurfacePoint {
         let local = (ray.origin - self.center) + ray.direction * hit.t;
         let normal = local.try_normalize().unwrap_or(Vector3::Y);
         let error = gamma(32) * (self.center.max_abs() + self.radius);

@@ -151,6 +151,18 @@ impl TriangleMesh {
         Some(MeshHit::new(triangle, meeting))
     }
 
+    /// The hit of a ray with one triangle, worked out again from what is worth keeping of it: the triangle and t. Of a ray
+    /// that does not meet the triangle it is the middle.
+    ///
+    /// # Panics
+    /// Where there is no such triangle.
+    pub fn hit(&self, ray: &Ray, triangle: u32, t: f64) -> MeshHit {
+        let meeting = RaySpace::new(ray).and_then(|space| space.meet(self.corners(triangle)));
+        meeting.map_or(MeshHit { t, triangle, barycentric: [1.0 / 3.0; 3], front: true }, |meeting| {
+            MeshHit::new(triangle, meeting)
+        })
+    }
+
     /// Visits all hits with t_min < t ≤ t_max, in a fixed order that is not that of t, until `visit` breaks; returns
     /// whether it did. What is a hit is the same as for [`TriangleMesh::intersect`].
     #[inline]

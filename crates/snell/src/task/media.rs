@@ -45,6 +45,8 @@ impl Crossing {
 #[derive(Clone, Copy, Debug)]
 struct Cell {
     inside: Inside,
+    /// The body that is there, of this one and those below.
+    current: Inside,
     below: MediumStack,
 }
 
@@ -61,6 +63,7 @@ impl MediumStacks {
     }
 
     /// The stack with one more body on top.
+    #[inline]
     pub fn enter(&mut self, stack: MediumStack, inside: Inside) -> MediumStack {
         // The same body is often entered from the same place by many rays of a tile, one after the other.
         if let Some(last) = self.cells.last()
@@ -69,49 +72,48 @@ impl MediumStacks {
         {
             return MediumStack(self.cells.len() as u32);
         }
-        self.cells.push(Cell { inside, below: stack });
+        let current = self.current(stack).filter(|below| below.priority > inside.priority).unwrap_or(inside);
+        self.cells.push(Cell { inside, current, below: stack });
         MediumStack(self.cells.len() as u32)
     }
 
     /// The stack without the topmost entry of a body; the same stack where the body is not in it.
+    #[inline]
     pub fn leave(&mut self, stack: MediumStack, solid: SolidId) -> MediumStack {
         match self.cell(stack) {
             None => stack,
             Some(cell) if cell.inside.solid == solid => cell.below,
             Some(_) if !self.contains(stack, solid) => stack,
-            Some(_) => {
-                // Keep what is above it, in order.
-                let mut above = Vec::new();
-                let mut at = stack;
-                while let Some(cell) = self.cell(at) {
-                    at = cell.below;
-                    if cell.inside.solid == solid {
-                        break;
-                    }
-                    above.push(cell.inside);
-                }
-                above.into_iter().rev().fold(at, |below, inside| self.enter(below, inside))
-            }
+            Some(_) => self.leave_below(stack, solid),
         }
     }
 
-    /// The body that is there: of the highest priority, and of those the one entered last; `None` outside of all.
-    pub fn current(&self, stack: MediumStack) -> Option<Inside> {
-        let mut best: Option<Inside> = None;
+    /// The stack without the topmost entry of a body that is in it somewhere.
+    fn leave_below(&mut self, stack: MediumStack, solid: SolidId) -> MediumStack {
+        // Keep what is above it, in order.
+        let mut above = Vec::new();
         let mut at = stack;
         while let Some(cell) = self.cell(at) {
-            if best.is_none_or(|b| cell.inside.priority > b.priority) {
-                best = Some(cell.inside);
-            }
             at = cell.below;
+            if cell.inside.solid == solid {
+                break;
+            }
+            above.push(cell.inside);
         }
-        best
+        above.into_iter().rev().fold(at, |below, inside| self.enter(below, inside))
+    }
+
+    /// The body that is there: of the highest priority, and of those the one entered last; `None` outside of all.
+    #[inline]
+    pub fn current(&self, stack: MediumStack) -> Option<Inside> {
+        self.cell(stack).map(|cell| cell.current)
     }
 
     /// A ray that travels in `stack` goes through the boundary of `inside`, into it or out of it.
     ///
     /// A ray that leaves a body which it is not known to be in, such as one that began inside an open surface, counts as having
     /// been in it.
+    #[inline]
     pub fn cross(&mut self, stack: MediumStack, inside: Inside, leaving: bool) -> Crossing {
         if leaving {
             let within = if self.contains(stack, inside.solid) { stack } else { self.enter(stack, inside) };
@@ -124,6 +126,7 @@ impl MediumStacks {
     }
 
     /// True where the body is in the stack.
+    #[inline]
     pub fn contains(&self, stack: MediumStack, solid: SolidId) -> bool {
         let mut at = stack;
         while let Some(cell) = self.cell(at) {
@@ -136,9 +139,9 @@ impl MediumStacks {
     }
 
     #[inline]
-    fn cell(&self, stack: MediumStack) -> Option<Cell> {
+    fn cell(&self, stack: MediumStack) -> Option<&Cell> {
         // Stack 0 is the empty one; stack n is the cell n − 1.
-        (stack.0 as usize).checked_sub(1).map(|index| self.cells[index])
+        (stack.0 as usize).checked_sub(1).map(|index| &self.cells[index])
     }
 }
 

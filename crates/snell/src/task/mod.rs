@@ -30,6 +30,8 @@ pub struct RayTask {
     pub kind: RayKind,
     /// The wavelength band it carries, or all light.
     pub band: Option<Band>,
+    /// The number of its sample in its pixel's sequence: samples split white light at different places.
+    pub sequence: u32,
 }
 
 /// What made a ray.
@@ -45,7 +47,7 @@ pub enum RayKind {
 
 /// One wavelength band of those that white light is split into, as a place in the integrator's list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Band(pub u8);
+pub struct Band(pub u16);
 
 /// A question that shading asks: how much of a light arrives here?
 #[derive(Clone, Copy, Debug)]

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use snell_math::{Rgb, Vector3};
 use snell_scene::scene::texture::NoiseKind;
-use snell_scene::scene::{ImageAsset, Pattern, Texture};
+use snell_scene::scene::{ImageAsset, Pattern, Space, Texture};
 use snell_scene::{Id, Table};
 
 use super::fractal::{MAX_OCTAVES, Octave, octaves};
@@ -24,10 +24,31 @@ pub(super) const MAX_COST: u64 = 1024;
 pub struct Textures {
     /// One for each texture of the scene, in its order.
     pub(super) nodes: Vec<Node>,
+    /// For each of them, which coordinates it looks at.
+    pub(super) spaces: Vec<Spaces>,
     pub(super) placements: Vec<Placement>,
     pub(super) images: Vec<Arc<TextureImage>>,
     pub(super) ramps: Vec<PlacedRamp>,
     pub(super) octaves: Vec<Octave>,
+}
+
+/// Which of the coordinates of a point a texture looks at: the others need not be worked out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Spaces {
+    /// Those of the object.
+    pub object: bool,
+    /// Those of the world.
+    pub world: bool,
+    /// Those of the surface.
+    pub uv: bool,
+}
+
+impl Spaces {
+    /// What either looks at.
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self { object: self.object | other.object, world: self.world | other.world, uv: self.uv | other.uv }
+    }
 }
 
 /// One texture; numbers are places in the tables of [`Textures`].
@@ -163,6 +184,7 @@ impl Textures {
         let mut compiled = Self {
             // Every place is written below, children before parents.
             nodes: vec![Node::Constant(Rgb::BLACK); textures.len()],
+            spaces: vec![Spaces::default(); textures.len()],
             images: images.to_vec(),
             ..Self::default()
         };
@@ -171,6 +193,7 @@ impl Textures {
             let texture = &textures[id];
             limits[id.index()] = Extent::of(id, &texture.pattern, &limits)?;
             compiled.nodes[id.index()] = compiled.node(id, texture)?;
+            compiled.spaces[id.index()] = compiled.spaces_of(id, texture);
         }
         Ok(compiled)
     }
@@ -238,6 +261,19 @@ impl Textures {
             }
         };
         Ok(node)
+    }
+
+    /// Which coordinates a compiled texture looks at, whose parts are compiled already.
+    fn spaces_of(&self, id: Id<Texture>, texture: &Texture) -> Spaces {
+        if matches!(self.nodes[id.index()], Node::Constant(_)) {
+            return Spaces::default();
+        }
+        let own = match texture.mapping.space {
+            Space::Object => Spaces { object: true, ..Spaces::default() },
+            Space::World => Spaces { world: true, ..Spaces::default() },
+            Space::Uv => Spaces { uv: true, ..Spaces::default() },
+        };
+        parts(&texture.pattern).fold(own, |spaces, part| spaces.union(self.spaces[part.index()]))
     }
 
     /// What two parts of a texture are, where they are surely the same.

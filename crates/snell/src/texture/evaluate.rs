@@ -5,7 +5,7 @@ use snell_scene::Id;
 use snell_scene::scene::Texture;
 
 use super::checker;
-use super::compile::{Node, Textures};
+use super::compile::{Node, Spaces, Textures};
 use super::coordinates::TextureCoordinates;
 use super::fractal;
 
@@ -42,6 +42,15 @@ impl Textures {
     #[must_use]
     pub fn is_constant(&self, id: Id<Texture>) -> bool {
         self.constant(id).is_some()
+    }
+
+    /// Which coordinates a texture looks at.
+    ///
+    /// # Panics
+    /// Where the id is not one of the table that was compiled.
+    #[must_use]
+    pub fn spaces(&self, id: Id<Texture>) -> Spaces {
+        self.spaces[id.index()]
     }
 
     /// How many textures there are; their ids go from 0 to one below.

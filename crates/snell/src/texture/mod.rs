@@ -45,7 +45,7 @@ mod view;
 mod tests;
 
 pub use background::{Background, BackgroundError};
-pub use compile::{TextureError, Textures};
+pub use compile::{Spaces, TextureError, Textures};
 pub use coordinates::{Footprint, RELATIVE_INSET, TextureCoordinates};
 pub use image::{TextureImage, TextureImageError};
 pub use ramp::RampError;

@@ -11,14 +11,14 @@
 
 mod shadow;
 
-use snell_math::{Ray, Rgb};
+use snell_math::{Point3, Ray, Rgb};
 
 use crate::compile::CompiledScene;
 use crate::geometry::{Hit, QueryScratch};
 use crate::integrator::{Integrator, Rules, Sink};
 use crate::observe::Observer;
 use crate::statistics::Statistics;
-use crate::task::{MediumStacks, RayKind, RayTask, ShadowQuestion};
+use crate::task::{MediumStack, MediumStacks, RayKind, RayTask, ShadowQuestion};
 
 /// The queues and buffers of one worker, reused from tile to tile so that rays cost no allocation.
 #[derive(Debug, Default)]
@@ -45,12 +45,13 @@ pub struct Tracer<'a, I> {
 }
 
 impl<I: Integrator> Tracer<'_, I> {
-    /// Traces camera rays, one a sample, and all that follows from them; gives the samples' colours in the same order.
+    /// Traces camera rays, one a sample, each with the sample's number in its pixel's sequence, and all that follows from
+    /// them; gives the samples' colours in the same order.
     ///
     /// `first_hits` is shown what each camera ray met, and may take it away: what lies beyond the far plane, say.
     pub fn trace<'s, O: Observer>(
         &self,
-        camera_rays: impl IntoIterator<Item = Ray>,
+        camera_rays: impl IntoIterator<Item = (Ray, u32)>,
         scratch: &'s mut Scratch,
         statistics: &mut Statistics,
         observer: &mut O,
@@ -61,8 +62,9 @@ impl<I: Integrator> Tracer<'_, I> {
         let mut next_id = 0;
         current.clear();
         media.clear();
-        for ray in camera_rays {
-            let task = camera_task(scene, ray, next_id, current.last(), media, query);
+        for (ray, sequence) in camera_rays {
+            let media = media_at(scene, ray.origin, current.last(), media, query);
+            let task = camera_task(ray, next_id, sequence, media);
             next_id += 1;
             observer.ray(&task);
             current.push(task);
@@ -113,20 +115,23 @@ impl<I: Integrator> Tracer<'_, I> {
     }
 }
 
-/// A ray from the camera, with all light and in the bodies that its origin is in.
-fn camera_task(
+/// The bodies that a camera ray begins in.
+fn media_at(
     scene: &CompiledScene,
-    ray: Ray,
-    number: u32,
+    origin: Point3,
     before: Option<&RayTask>,
     media: &mut MediumStacks,
     query: &mut QueryScratch,
-) -> RayTask {
-    let media = match before {
+) -> MediumStack {
+    match before {
         // The rays of a perspective camera share their origin.
-        Some(before) if before.ray.origin == ray.origin => before.media,
-        _ => scene.media_around(ray.origin, media, query),
-    };
+        Some(before) if before.ray.origin == origin => before.media,
+        _ => scene.media_around(origin, media, query),
+    }
+}
+
+/// A ray from the camera, with all light.
+fn camera_task(ray: Ray, number: u32, sequence: u32, media: MediumStack) -> RayTask {
     RayTask {
         ray,
         throughput: Rgb::WHITE,
@@ -138,5 +143,6 @@ fn camera_task(
         passes: 0,
         kind: RayKind::Camera,
         band: None,
+        sequence,
     }
 }

@@ -1,7 +1,8 @@
 //! NFF, Eric Haines's Neutral File Format, in which the Standard Procedural Databases (SPD) come.
 //!
-//! After NFF.TXT version 3.9 (1996) and the SPD's Readme 3.14. Everything is in world space, right-handed; colours are
-//! taken as scene-linear.
+//! After NFF.TXT version 3.9 (1996) and the SPD's Readme 3.14. Everything is in world space, right-handed. The format is of
+//! a time when numbers went to the screen as they were, so the colours of fills and of the background are taken as
+//! display values (sRGB) and decoded: they look as their author saw them. Shares and lights are linear.
 //!
 //! - `f` r g b Kd Ks Shine T index: diffuse is Kd · rgb; where Ks > 0 the surface mirrors and has Phong's highlight, both
 //!   with the plain share Ks (white, as in Haines's pictures); where T > 0 it transmits T · rgb (his gears tint what

@@ -115,10 +115,15 @@ impl<'a> Parser<'_, 'a> {
         Some(Rgb::from(self.numbers::<3>(what, SHARE)?.map(|c| c as f32)))
     }
 
+    /// A colour as its author saw it: the number that went to the screen.
+    fn displayed_color(&mut self, what: &str) -> Told<Rgb> {
+        Some(Rgb::from_srgb(self.color(what)?.to_array()))
+    }
+
     fn entity(&mut self, keyword: Word<'a>) -> Told<()> {
         match keyword.text {
             b"v" => self.view(keyword)?,
-            b"b" => self.builder.background = self.color("the background's colour")?,
+            b"b" => self.builder.background = self.displayed_color("the background's colour")?,
             b"l" => self.light()?,
             b"f" => self.fill()?,
             b"s" => {
@@ -212,7 +217,7 @@ impl<'a> Parser<'_, 'a> {
     }
 
     fn fill(&mut self) -> Told<()> {
-        let color = self.color("the fill's colour")?;
+        let color = self.displayed_color("the fill's colour")?;
         let [diffuse, specular] = self.numbers("the fill's Kd or Ks", SHARE)?.map(|share| share as f32);
         let shininess = self.number("the fill's Shine", 0.0..=1e30)? as f32;
         let transmittance = self.number("the fill's T", SHARE)? as f32;

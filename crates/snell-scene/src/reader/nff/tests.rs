@@ -47,7 +47,7 @@ fn every_entity_becomes_what_it_says() {
          p 4\n0 0 0 1 0 0\n1 1 0 0 1 0\npp 3\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 1 0\n\
          f 1 0.5 0 0.5 0.1 30 0.5 1.5\ns 0 0 0 1\n"
     ));
-    assert_eq!(scene.background, Background::Color(Rgb::new(0.1, 0.2, 0.3)));
+    assert_eq!(scene.background, Background::Color(Rgb::from_srgb([0.1, 0.2, 0.3])));
     assert_eq!((scene.settings.width, scene.settings.height), (512, 256));
     assert_eq!(scene.camera.frame, Frame::VerticalFov(std::f64::consts::FRAC_PI_4));
     // Two lights: √2 / 4 each, unless they say otherwise.
@@ -67,7 +67,7 @@ fn every_entity_becomes_what_it_says() {
 
     let opaque = material(&scene, &scene.objects[0]);
     assert!(opaque.one_sided && opaque.dielectric.is_none() && opaque.shininess == 30.0);
-    assert_eq!(color(&scene, opaque.diffuse), Some(Rgb::new(0.5, 0.25, 0.125)));
+    assert_eq!(color(&scene, opaque.diffuse), Some(Rgb::from_srgb([1.0, 0.5, 0.25]) * 0.5));
     assert_eq!(color(&scene, opaque.mirror), Some(Rgb::gray(0.25)));
     assert_eq!(color(&scene, opaque.specular), Some(Rgb::gray(0.25)));
     let glass = material(&scene, &scene.objects[5]);
@@ -75,7 +75,7 @@ fn every_entity_becomes_what_it_says() {
     assert!(!glass.one_sided && glass.mirror.is_none() && !dielectric.fresnel);
     assert_eq!(dielectric.ior, Dispersion::Constant(1.5));
     assert_eq!(color(&scene, Some(dielectric.reflect)), Some(Rgb::gray(0.1)));
-    assert_eq!(color(&scene, Some(dielectric.transmit)), Some(Rgb::new(0.5, 0.25, 0.0)));
+    assert_eq!(color(&scene, Some(dielectric.transmit)), Some(Rgb::from_srgb([1.0, 0.5, 0.0]) * 0.5));
 }
 
 #[test]

@@ -176,7 +176,7 @@ fn read_vertices<S: Source>(
                 Role::Normal(i) => normal[i] = value as f32,
                 Role::Uv(i) if has_uvs => uv[i] = finite(value, "texture coordinate", row, source, report),
                 Role::Color(i) if scalar == Scalar::U8 => color[i] = bytes[value.clamp(0.0, 255.0) as usize],
-                Role::Color(i) => color[i] = linear(value, scalar),
+                Role::Color(i) => color[i] = linear(finite(value, "colour", row, source, report).into(), scalar),
                 _ => {}
             }
         }

@@ -85,7 +85,7 @@ fn linear(value: f64, scalar: header::Scalar) -> f32 {
         Scalar::I8 | Scalar::U8 => 255.0,
         Scalar::I16 | Scalar::U16 => 65535.0,
         Scalar::I32 | Scalar::U32 => f64::from(u32::MAX),
-        Scalar::F32 | Scalar::F64 => return if value.is_finite() { value.max(0.0) as f32 } else { 0.0 },
+        Scalar::F32 | Scalar::F64 => return value.max(0.0) as f32,
     };
     srgb_to_linear((value / encoded_by).clamp(0.0, 1.0) as f32)
 }
