@@ -33,7 +33,7 @@ fn main() {
     }));
     // Where references are being written, nothing is compared, and so no defect can be caught.
     if std::env::var_os("SNELL_BLESS").is_none_or(|value| value != "1") {
-        trials.push(Trial::test("a-picture-that-is-off-by-one-is-told", || {
+        trials.push(Trial::test("a-picture-that-is-off-by-one-is-told", move || {
             let name = scenes.first().ok_or("there is no scene")?;
             let picture = picture(name);
             let defect = off_by_one(&picture);
