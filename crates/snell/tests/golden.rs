@@ -33,11 +33,11 @@ fn main() {
     }));
     // Where references are being written, nothing is compared, and so no defect can be caught.
     if std::env::var_os("SNELL_BLESS").is_none_or(|value| value != "1") {
-        let name = scenes.first().cloned();
-        trials.push(Trial::test("a-picture-that-is-off-by-one-is-told", || {
-            let name = name.ok_or("there is no scene")?;
-            let defect = off_by_one(&picture(&name));
-            must_fail("one step in one pixel", || assert_golden(&name, &defect, goldens()));
+        trials.push(Trial::test("a-picture-that-is-off-by-one-is-told", move || {
+            let name = scenes.first().ok_or("there is no scene")?;
+            let picture = picture(name);
+            let defect = off_by_one(&picture);
+            must_fail("one step in one pixel", || assert_golden(name, &defect, goldens()));
             Ok(())
         }));
     }

@@ -137,14 +137,14 @@ impl Space {
         &self,
         ray: &Ray,
         t_max: f64,
-        mut test: impl FnMut(&Primitive, f64) -> Option<H>,
+        mut test: impl FnMut(u32, &Primitive, f64) -> Option<H>,
     ) -> Option<(u32, H)> {
         let mut nearest = None;
         let mut limit = t_max;
         let first_alone = self.first_alone();
         // The unbounded ones before the rest, since a floor shortens the way through it.
         for (primitive, index) in self.primitives[first_alone..].iter().zip(first_alone as u32..) {
-            if let Some(hit) = test(primitive, limit)
+            if let Some(hit) = test(index, primitive, limit)
                 && (hit.t() < limit || hit.t() == limit && nearest.is_none())
             {
                 limit = hit.t();
@@ -154,7 +154,7 @@ impl Space {
         if first_alone == 0 {
             return nearest;
         }
-        let bounded = self.bvh.closest(ray, limit, |index, limit| test(&self.primitives[index as usize], limit));
+        let bounded = self.bvh.closest(ray, limit, |index, limit| test(index, &self.primitives[index as usize], limit));
         bounded.or(nearest)
     }
 

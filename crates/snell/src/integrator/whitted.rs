@@ -11,7 +11,7 @@ use super::dispersion::Dispersion;
 use super::{Integrator, Sink, Spawn, scattering};
 use crate::camera::{Camera, Projection, Window};
 use crate::compile::CompiledScene;
-use crate::geometry::Hit;
+use crate::geometry::{Geometry, Hit};
 use crate::interaction::SurfaceInteraction;
 use crate::material::{Bsdf, Interface};
 use crate::observe::Observer;
@@ -78,7 +78,7 @@ impl Integrator for Whitted {
         let leaving = interaction.is_outward(task.ray.direction);
         let crossing = material.body.as_ref().map(|body| {
             let inside = Inside { solid: interaction.solid, material: interaction.material, priority: body.priority };
-            out.media.cross(task.media, inside, leaving)
+            out.media.cross(task.media, inside, leaving, Geometry::is_at_origin(&task.ray, hit))
         });
         // A boundary that a body of higher priority covers is not there.
         if let Some(crossing) = crossing

@@ -62,7 +62,8 @@ fn ambient_and_emission_are_there_without_light() {
 
 #[test]
 fn light_falls_off_by_its_law() {
-    let laws: [(&str, fn(f64) -> f64); 4] = [
+    type Law = fn(f64) -> f64;
+    let laws: [(&str, Law); 4] = [
         (", falloff = \"none\"", |_| 1.0),
         (", falloff = \"linear\"", |d| 1.0 / d),
         (", falloff = \"inverse-square\"", |d| 1.0 / (d * d)),

@@ -64,9 +64,15 @@ impl Stage {
 
     /// The rays of every pixel's first sample, from the top left.
     pub fn trees(&self) -> impl Iterator<Item = ([u32; 2], RayTree)> {
+        self.trees_every(1)
+    }
+
+    /// The same in every `step`th column and row.
+    pub fn trees_every(&self, step: u32) -> impl Iterator<Item = ([u32; 2], RayTree)> {
         let watch = self.watch();
         let [dx, dy] = sampling::pixel_sample(0);
-        self.pixels().map(move |[x, y]| {
+        let kept = move |[x, y]: &[u32; 2]| x % step == 0 && y % step == 0;
+        self.pixels().filter(kept).map(move |[x, y]| {
             let ray = watch.camera.generate_ray(f64::from(x) + dx, f64::from(y) + dy);
             ([x, y], watch.shoot(ray).0)
         })

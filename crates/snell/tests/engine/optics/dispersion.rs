@@ -82,13 +82,14 @@ fn bands_together_are_white_again() {
 
 #[test]
 fn every_band_goes_its_own_way() {
-    let stage = scene("ior = \"N-SF11\"", 16);
+    // Pixels so small that they show every band.
+    let stage = scene("ior = \"N-SF11\"", 16).sized(60_000, 4);
     let (tree, _) = stage.shoot(Ray::new(Point3::new(-1.0, 1.4, 9.0), -Vector3::Z));
     let hit = tree.rays[0].hit.flatten().expect("the ball");
     let glass = snell::scene::catalogue::lookup("N-SF11").expect("a glass").dispersion();
-    let bands = Bands::new(16);
+    let bands = Bands::shifted(16, 0.0);
     let rays: Vec<_> = children(&tree, tree.rays[0].task.id).filter(|ray| ray.task.band.is_some()).collect();
-    assert_eq!(rays.len(), 16);
+    assert_eq!((rays.len(), bands.len()), (16, 16));
     let check = |shift: f64| {
         for (ray, band) in rays.iter().zip(bands.iter()) {
             let index = glass.index(band.wavelength_nm + shift);
