@@ -1,7 +1,8 @@
 //! The Standard Procedural Databases by their rules: the numbers of rays against Eric Haines's published ones.
 //!
-//! `tests/data/spd_ray_counts.csv` says where the numbers are from. Ours agree within 1 %, where the Readme expects 10 %, with
-//! two exceptions that have reasons, given in [`Published::tolerance`].
+//! `tests/data/spd_ray_counts.csv` says where the numbers are from. The Readme expects classical ray tracers to agree within 10 %;
+//! ours agrees within 0.1 %. Two things are not the same and are said where they matter: the teapot, whose file has another
+//! size, and light that meets total internal reflection in gears.
 
 use snell::scene::reader::nff;
 use snell::statistics::Statistics;
@@ -46,12 +47,31 @@ fn stage(file: &str) -> Option<Stage> {
     Some(Stage::of(&scene))
 }
 
-/// Renders by the rules; the counts, and how many camera rays hit something.
-fn count(stage: &mut Stage) -> (Statistics, u64) {
+/// What we count.
+#[derive(Clone, Copy, Debug)]
+struct Ours {
+    statistics: Statistics,
+    /// Camera rays that hit something.
+    eye_hits: u64,
+    /// Rays that would have been refracted, and counted, but for total internal reflection: those that met it before the
+    /// greatest depth.
+    not_refracted: u64,
+}
+
+/// Renders by the rules.
+fn count(stage: &mut Stage) -> Ours {
     stage.settings.layers = true;
     let rendering = stage.render();
     let objects = rendering.layers.and_then(|layers| layers.object).expect("asked for");
-    (rendering.statistics, objects.pixels().iter().filter(|object| **object != 0).count() as u64)
+    let eye_hits = objects.pixels().iter().filter(|object| **object != 0).count() as u64;
+    let statistics = rendering.statistics;
+    let not_refracted = if statistics.total_internal_reflections == 0 {
+        0
+    } else {
+        stage.settings.depth -= 1;
+        stage.render().statistics.total_internal_reflections
+    };
+    Ours { statistics, eye_hits, not_refracted }
 }
 
 impl Published {
@@ -60,56 +80,56 @@ impl Published {
         match self.database.as_str() {
             // The file at hand has size 6, the table's teapot 12: another silhouette, and other normals.
             "teapot" => 0.015,
-            _ => 0.01,
+            _ => 0.001,
         }
     }
 
     #[track_caller]
-    fn agrees(&self, (ours, eye_hits): &(Statistics, u64)) {
-        let Self { database, reflected, refracted, shadow, .. } = self;
-        assert_eq!((ours.camera_rays, ours.nonfinite_samples), (513 * 513, 0));
-        let near = |kind: &str, our: u64, their: u64| {
-            let difference = if our == their { 0.0 } else { our as f64 / their as f64 - 1.0 };
-            assert!(difference.abs() < self.tolerance(), "{database}: {our} {kind} and not {their}: {difference:+.4}");
-        };
-        near("camera rays that hit", *eye_hits, self.eye_hits);
-        near("reflected rays", ours.reflected_rays, *reflected);
-        near("shadow rays", ours.shadow_rays, *shadow);
-        if ours.total_internal_reflections == 0 {
-            near("refracted rays", ours.refracted_rays, *refracted);
-        } else {
-            // In the published counts of gears there is a refracted ray for every reflected one of a transparent surface,
-            // as if light never met total internal reflection; with ours that did, the numbers agree again. Those at
-            // the greatest depth spawn nothing in any case.
-            let with_total = ours.refracted_rays + ours.total_internal_reflections;
-            let range = ours.refracted_rays..=with_total;
-            assert!(range.contains(refracted), "{database}: {range:?} refracted rays and not {refracted}");
+    fn agrees(&self, ours: &Ours) {
+        let Ours { statistics, eye_hits, not_refracted } = ours;
+        assert_eq!((statistics.camera_rays, statistics.nonfinite_samples), (513 * 513, 0));
+        // In the published counts of gears every ray that is reflected at a transparent surface is refracted as well, as if
+        // none met total internal reflection.
+        let refracted = statistics.refracted_rays + not_refracted;
+        for (kind, ours, theirs) in [
+            ("camera rays that hit", *eye_hits, self.eye_hits),
+            ("reflected rays", statistics.reflected_rays, self.reflected),
+            ("refracted rays", refracted, self.refracted),
+            ("shadow rays", statistics.shadow_rays, self.shadow),
+        ] {
+            let difference = difference(ours, theirs);
+            let database = &self.database;
+            assert!(
+                difference.abs() < self.tolerance(),
+                "{database}: {ours} {kind} and not {theirs}: {difference:+.4}"
+            );
         }
     }
 }
 
+/// How much more there is of ours, as a share.
+fn difference(ours: u64, theirs: u64) -> f64 {
+    if ours == theirs { 0.0 } else { ours as f64 / theirs as f64 - 1.0 }
+}
+
 /// Prints one row of the comparison, for those who look at the output.
-fn print(row: &Published, (ours, eye_hits): &(Statistics, u64)) {
-    let cell = |our: u64, their: u64| {
-        let percent = if our == their { 0.0 } else { 100.0 * (our as f64 / their as f64 - 1.0) };
-        format!("{our:>8} {percent:+6.2} %")
-    };
+fn print(row: &Published, Ours { statistics, eye_hits, not_refracted }: &Ours) {
+    let cell = |ours: u64, theirs: u64| format!("{ours:>8} {:+6.2} %", 100.0 * difference(ours, theirs));
     println!(
-        "{:7} hit {} reflected {} refracted {} shadow {} total {}",
+        "{:7} hit {} reflected {} refracted {} and {not_refracted} shadow {}",
         row.database,
         cell(*eye_hits, row.eye_hits),
-        cell(ours.reflected_rays, row.reflected),
-        cell(ours.refracted_rays, row.refracted),
-        cell(ours.shadow_rays, row.shadow),
-        ours.total_internal_reflections,
+        cell(statistics.reflected_rays, row.reflected),
+        cell(statistics.refracted_rays, row.refracted),
+        cell(statistics.shadow_rays, row.shadow),
     );
 }
 
 #[test]
 fn counts_of_rays_agree_with_the_published_ones() {
-    let all = long_tests("ray counts of five of the seven databases");
+    let all = long_tests("ray counts of four of the seven databases");
     for row in published() {
-        if !all && !matches!(row.database.as_str(), "tetra" | "mount") {
+        if !all && !matches!(row.database.as_str(), "tetra" | "mount" | "gears") {
             continue;
         }
         let Some(mut stage) = stage(&format!("{}-default.nff", row.database)) else { return };
