@@ -5,7 +5,7 @@ use snell_math::{Bounds3, Transform};
 use snell_scene::scene::{self, Object, ObjectKind, Scene};
 use snell_scene::{Diagnostic, Id, Severity};
 
-use crate::accel::{BuildError, Bvh};
+use crate::accel::BuildError;
 use crate::csg::{CsgNode, CsgSolid};
 use crate::geometry::{Attributes, Geometry, NONE, ObjectSpace, Placement, Primitive, Space};
 use crate::material::Material;
@@ -149,6 +149,7 @@ impl Compiler<'_> {
         let bounds = if placement == NONE { bounds } else { placed_bounds(&space_from_object, &bounds) };
         let primitive = match shape {
             Shape::Sphere(sphere) if placement == NONE => Primitive::Sphere(sphere),
+            Shape::Plane(plane) if placement == NONE => Primitive::Plane(plane),
             shape => Primitive::Shape { shape: parts.add_shape(shape), placement },
         };
         self.push(parts, bounds, primitive, attributes, object);
@@ -359,9 +360,8 @@ impl Parts {
             primitives.push(primitive);
             attributes.push(attribute);
         }
-        let bvh = Bvh::build(&bounds)?;
         let Self { shapes, placements, object_spaces, .. } = self;
-        Ok(Space { primitives, attributes, bounds, shapes, placements, object_spaces, bvh })
+        Space::new(primitives, attributes, bounds, shapes, placements, object_spaces)
     }
 }
 
