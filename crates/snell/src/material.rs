@@ -180,6 +180,12 @@ impl Material {
         self.textured.iter().fold(Spaces::default(), |all, &(_, texture)| all.union(textures.spaces(texture)))
     }
 
+    /// The lobes, where they are the same at all hits without a vertex colour.
+    #[inline]
+    pub fn constant_bsdf(&self) -> Option<&Bsdf> {
+        self.textured.is_empty().then_some(&self.base)
+    }
+
     /// The lobes at a hit.
     #[inline]
     pub fn bsdf(&self, textures: &Textures, interaction: &SurfaceInteraction) -> Bsdf {

@@ -6,7 +6,7 @@ use snell_scene::scene::{self, Object, ObjectKind, Scene};
 use snell_scene::{Diagnostic, Id, Severity};
 
 use super::count::{COPIED_PROTOTYPE, refuse_too_many};
-use crate::accel::{BuildError, Bvh};
+use crate::accel::BuildError;
 use crate::csg::{CsgNode, CsgSolid};
 use crate::geometry::{Attributes, Geometry, NONE, ObjectSpace, Placement, Primitive, Space};
 use crate::material::Material;
@@ -140,6 +140,7 @@ impl Compiler<'_> {
         let bounds = if placement == NONE { bounds } else { placed_bounds(&space_from_object, &bounds) };
         let primitive = match shape {
             Shape::Sphere(sphere) if placement == NONE => Primitive::Sphere(sphere),
+            Shape::Plane(plane) if placement == NONE => Primitive::Plane(plane),
             shape => Primitive::Shape { shape: parts.add_shape(shape), placement },
         };
         parts.push(bounds, primitive, attributes);
@@ -335,9 +336,8 @@ impl Parts {
             primitives.push(primitive);
             attributes.push(attribute);
         }
-        let bvh = Bvh::build(&bounds)?;
         let Self { shapes, placements, object_spaces, .. } = self;
-        Ok(Space { primitives, attributes, bounds, shapes, placements, object_spaces, bvh })
+        Space::new(primitives, attributes, bounds, shapes, placements, object_spaces)
     }
 }
 

@@ -4,8 +4,6 @@ use std::ops::ControlFlow;
 
 use snell_math::Ray;
 
-use crate::shape::Shape;
-
 use super::space::{Attributes, NONE, Primitive, Space};
 use super::{Geometry, Hit, LocalHit, QueryScratch};
 
@@ -49,7 +47,7 @@ impl Geometry {
     }
 
     /// Whether a ray, given in the primitive's space, meets one primitive that is no instance with 0 < t < `distance`.
-    #[inline]
+    #[inline(always)]
     fn is_met(
         &self,
         space: &Space,
@@ -60,10 +58,8 @@ impl Geometry {
     ) -> bool {
         match primitive {
             Primitive::Sphere(sphere) => sphere.intersect(ray, 0.0, distance).is_some(),
-            Primitive::Shape { shape, placement: NONE } if let Shape::Plane(plane) = &space.shapes[*shape as usize] => {
-                plane.intersect(ray, 0.0, distance).is_some()
-            }
-            primitive => self.intersect_between(space, primitive, ray, 0.0, distance, scratch).is_some(),
+            Primitive::Plane(plane) => plane.intersect(ray, 0.0, distance).is_some(),
+            primitive => self.intersect_primitive(space, primitive, ray, 0.0, distance, scratch).is_some(),
         }
     }
 
@@ -104,7 +100,7 @@ impl Geometry {
             // The others have few surfaces: from one to the next.
             _ => {
                 let mut t_min = 0.0;
-                while let Some(local) = self.intersect_between(space, primitive, ray, t_min, distance, scratch) {
+                while let Some(local) = self.intersect_primitive(space, primitive, ray, t_min, distance, scratch) {
                     if visit(local).is_break() {
                         return true;
                     }

@@ -16,8 +16,8 @@ pub(crate) use space::{Attributes, NONE, ObjectSpace, Primitive, Space};
 use crate::accel::Candidate;
 use crate::csg::{CsgHit, CsgScratch, CsgSolid};
 use crate::interaction::{SolidId, SurfaceInteraction};
+use crate::shape::ShapeHit;
 use crate::shape::triangle_mesh::{MeshHit, TriangleMesh};
-use crate::shape::{Shape, ShapeHit};
 use crate::task::RayTask;
 use crate::texture::Spaces;
 
@@ -76,6 +76,7 @@ pub(crate) struct LocalHit {
 }
 
 /// A hit within one primitive of the world.
+#[derive(Clone, Copy)]
 struct InnerHit {
     /// What hits are compared by, see [`Touching`].
     key: f64,
@@ -111,6 +112,12 @@ impl Touching {
     #[inline]
     fn key(self, t: f64, is_opaque: bool) -> f64 {
         if is_opaque { t } else { t + (TOUCHING * t + self.0) }
+    }
+
+    /// A hit to be compared with others.
+    #[inline]
+    fn candidate(self, local: LocalHit, is_opaque: bool) -> InnerHit {
+        InnerHit { key: self.key(local.t, is_opaque), inner: NONE, local }
     }
 }
 
@@ -160,15 +167,13 @@ impl Geometry {
     #[inline]
     pub fn intersect(&self, ray: &Ray, t_max: f64, scratch: &mut QueryScratch) -> Option<Hit> {
         let touching = Touching::along(ray);
-        let found = self.world.nearest(ray, t_max, |index, primitive, t_max| match primitive {
-            Primitive::Instance { prototype, placement, .. } => {
-                self.intersect_instance(*prototype, *placement, ray, touching, t_max, scratch)
+        let found = self.world.nearest(ray, touching, t_max, |primitive, is_opaque, t_max| {
+            if let Primitive::Instance { prototype, placement, .. } = primitive {
+                return self.intersect_instance(*prototype, *placement, ray, touching, t_max, scratch);
             }
-            primitive => {
-                let local = self.intersect_primitive(&self.world, primitive, ray, t_max, scratch)?;
-                let key = touching.key(local.t, self.world.attributes[index as usize].is_opaque);
-                Some(InnerHit { key, inner: NONE, local })
-            }
+            // Those at `t_max` count.
+            let local = self.intersect_primitive(&self.world, primitive, ray, 0.0, t_max.next_up(), scratch)?;
+            Some(touching.candidate(local, is_opaque))
         });
         found.map(|(primitive, InnerHit { inner, local, .. })| Hit { t: local.t, primitive, inner, place: local.place })
     }
@@ -192,40 +197,17 @@ impl Geometry {
     ) -> Option<InnerHit> {
         let ray = self.world.placements[placement as usize].to_local(ray);
         let space = &self.prototypes[prototype as usize];
-        let test = |inner: u32, primitive: &Primitive, t_max| {
-            let local = self.intersect_primitive(space, primitive, &ray, t_max, scratch)?;
-            let key = touching.key(local.t, space.attributes[inner as usize].is_opaque);
-            Some(InnerHit { key, inner, local })
-        };
-        space.nearest(&ray, t_max, test).map(|(_, hit)| hit)
-    }
-
-    /// The nearest hit with t > 0 of a ray, given in the primitive's space, with one primitive that is no instance. One beyond
-    /// `t_max` may be returned or not.
-    #[inline]
-    fn intersect_primitive(
-        &self,
-        space: &Space,
-        primitive: &Primitive,
-        ray: &Ray,
-        t_max: f64,
-        scratch: &mut QueryScratch,
-    ) -> Option<LocalHit> {
-        match primitive {
-            Primitive::Sphere(sphere) => sphere.intersect(ray, 0.0, f64::INFINITY).map(LocalHit::from),
-            // A floor: the one shape that nearly every ray is tested with.
-            Primitive::Shape { shape, placement: NONE } if let Shape::Plane(plane) = &space.shapes[*shape as usize] => {
-                plane.intersect(ray, 0.0, f64::INFINITY).map(LocalHit::from)
-            }
-            // What is asked for is the nearest below, and those at `t_max` count.
-            primitive => self.intersect_between(space, primitive, ray, 0.0, t_max.next_up(), scratch),
-        }
+        let found = space.nearest(&ray, touching, t_max, |primitive, is_opaque, t_max| {
+            let local = self.intersect_primitive(space, primitive, &ray, 0.0, t_max.next_up(), scratch)?;
+            Some(touching.candidate(local, is_opaque))
+        });
+        found.map(|(inner, hit)| InnerHit { inner, ..hit })
     }
 
     /// The nearest hit with `t_min < t < t_max`, or a little above, of a ray, given in the primitive's space, with one
     /// primitive that is no instance.
     #[inline(never)]
-    fn intersect_between(
+    fn intersect_primitive(
         &self,
         space: &Space,
         primitive: &Primitive,
@@ -244,6 +226,7 @@ impl Geometry {
         };
         match primitive {
             Primitive::Sphere(sphere) => sphere.intersect(ray, t_min, t_max).map(LocalHit::from),
+            Primitive::Plane(plane) => plane.intersect(ray, t_min, t_max).map(LocalHit::from),
             Primitive::Shape { shape, .. } => {
                 space.shapes[*shape as usize].intersect(ray, t_min, t_max).map(LocalHit::from)
             }
@@ -280,8 +263,8 @@ impl Geometry {
         interaction
     }
 
-    /// The interaction in the space that the primitive and the ray are in.
-    #[inline]
+    /// The interaction in the space that the primitive and the ray are in. Inlined, since it is too large to be moved.
+    #[inline(always)]
     fn interaction_in(
         &self,
         space: &Space,
@@ -304,12 +287,9 @@ impl Geometry {
         let mut vertex_color = None;
         let surface = match primitive {
             Primitive::Sphere(sphere) => sphere.surface_geometry(local_ray, ShapeHit { t: hit.t, part: 0 }),
+            Primitive::Plane(plane) => plane.surface_geometry(local_ray, ShapeHit { t: hit.t, part: 0 }),
             Primitive::Shape { shape, .. } => {
-                let hit = ShapeHit { t: hit.t, part: hit.place.part };
-                match &space.shapes[*shape as usize] {
-                    Shape::Plane(plane) => plane.surface_geometry(local_ray, hit),
-                    shape => shape.surface_geometry(local_ray, hit),
-                }
+                space.shapes[*shape as usize].surface_geometry(local_ray, ShapeHit { t: hit.t, part: hit.place.part })
             }
             Primitive::Mesh { mesh, .. } => {
                 let mesh = &self.meshes[*mesh as usize];
@@ -411,7 +391,7 @@ impl Geometry {
         }
         let local = space.placement(primitive).map_or(point, |placement| placement.point_to_local(point));
         let contains = match primitive {
-            Primitive::Sphere(_) | Primitive::Shape { .. } => {
+            Primitive::Sphere(_) | Primitive::Plane(_) | Primitive::Shape { .. } => {
                 space.shape(primitive).is_some_and(|shape| shape.is_solid() && shape.contains(local))
             }
             Primitive::Mesh { mesh, .. } => self.meshes[*mesh as usize].contains(local),
@@ -423,7 +403,7 @@ impl Geometry {
         }
         // Its material is the one of the boundary that is met on the way out.
         let ray = Ray::new(point, Vector3::new(0.48, 0.6, 0.64));
-        let local = self.intersect_between(space, primitive, &ray, 0.0, f64::INFINITY, scratch)?;
+        let local = self.intersect_primitive(space, primitive, &ray, 0.0, f64::INFINITY, scratch)?;
         let material = self.material_of(primitive, &space.attributes[index as usize], inherited, local.place);
         self.transparent[material as usize].then_some((bounds.half_area(), material))
     }

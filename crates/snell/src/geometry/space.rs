@@ -3,9 +3,10 @@
 use snell_math::{Bounds3, Normal3, Point3, Ray, Vector3};
 
 use super::placed::Placement;
-use crate::accel::{Bvh, Candidate};
+use super::{InnerHit, Touching};
+use crate::accel::{BuildError, Bvh, Candidate};
 use crate::interaction::SurfaceInteraction;
-use crate::shape::{Shape, Sphere};
+use crate::shape::{Plane, Shape, ShapeHit, Sphere, SpherePairs};
 use crate::texture::RELATIVE_INSET;
 
 /// No such place: no placement, no material, no inner primitive.
@@ -13,14 +14,18 @@ pub const NONE: u32 = u32::MAX;
 
 /// Up to so many primitives of a space are tested one by one.
 const HANDFUL: usize = 4;
+/// Up to so many, where all are plain spheres, which are tested faster than boxes.
+const HANDFUL_OF_SPHERES: usize = 24;
 
 /// Something that a ray can meet: a place in one of the lists of its space or of the geometry. `placement` is a place too, or
 /// [`NONE`] where it stands in its space as it is.
 ///
-/// Spheres that do so are kept here themselves: scenes of very many primitives are most often made of them.
+/// Spheres and planes that do so are kept here themselves: scenes of very many primitives are most often made of the ones,
+/// and nearly every ray is tested with one of the others.
 #[derive(Debug)]
 pub enum Primitive {
     Sphere(Sphere),
+    Plane(Plane),
     Shape { shape: u32, placement: u32 },
     Mesh { mesh: u32, placement: u32 },
     Solid { solid: u32, placement: u32 },
@@ -52,6 +57,26 @@ fn inside(point: Point3, outward: Normal3, error: f64) -> Vector3 {
     outward.as_vector() * -(8.0 * error + RELATIVE_INSET * point.max_abs())
 }
 
+/// The nearest hit of a ray with one primitive, by `test` unless it is one of those that stand in their space as they are.
+///
+/// Inlined where it is used, which is in the loops over primitives.
+#[inline(always)]
+fn meet(
+    primitive: &Primitive,
+    is_opaque: bool,
+    ray: &Ray,
+    touching: Touching,
+    limit: f64,
+    test: &mut impl FnMut(&Primitive, bool, f64) -> Option<InnerHit>,
+) -> Option<InnerHit> {
+    let candidate = |hit: ShapeHit| touching.candidate(hit.into(), is_opaque);
+    match primitive {
+        Primitive::Sphere(sphere) => sphere.intersect(ray, 0.0, f64::INFINITY).map(candidate),
+        Primitive::Plane(plane) => plane.intersect(ray, 0.0, f64::INFINITY).map(candidate),
+        primitive => test(primitive, is_opaque, limit),
+    }
+}
+
 /// Primitives with their hierarchy: bounded ones first, then those without bounds, such as planes.
 #[derive(Debug)]
 pub struct Space {
@@ -64,6 +89,34 @@ pub struct Space {
     pub object_spaces: Vec<ObjectSpace>,
     /// Over the first primitives, as many as `bounds` has.
     pub bvh: Bvh,
+    /// In place of the hierarchy, where those are a handful of plain spheres; else empty.
+    pub handful: SpherePairs,
+    /// From which primitive on they are tested one by one.
+    pub first_alone: usize,
+}
+
+impl Space {
+    /// From its lists, and builds what finds the primitives; `bounds` are those of the first of them.
+    pub fn new(
+        primitives: Vec<Primitive>,
+        attributes: Vec<Attributes>,
+        bounds: Vec<Bounds3>,
+        shapes: Vec<Shape>,
+        placements: Vec<Placement>,
+        object_spaces: Vec<ObjectSpace>,
+    ) -> Result<Self, BuildError> {
+        let bvh = Bvh::build(&bounds)?;
+        let bounded = bounds.len();
+        let spheres: Vec<Sphere> = primitives[..bounded]
+            .iter()
+            .take(HANDFUL_OF_SPHERES + 1)
+            .map_while(|primitive| if let Primitive::Sphere(sphere) = primitive { Some(*sphere) } else { None })
+            .collect();
+        let are_spheres = spheres.len() == bounded && bounded <= HANDFUL_OF_SPHERES;
+        let handful = if are_spheres { SpherePairs::new(&spheres) } else { SpherePairs::default() };
+        let first_alone = if !are_spheres && bounded <= HANDFUL { 0 } else { bounded };
+        Ok(Self { primitives, attributes, bounds, shapes, placements, object_spaces, bvh, handful, first_alone })
+    }
 }
 
 impl Space {
@@ -71,7 +124,7 @@ impl Space {
     #[inline]
     pub fn placement(&self, primitive: &Primitive) -> Option<&Placement> {
         match primitive {
-            Primitive::Sphere(_) => None,
+            Primitive::Sphere(_) | Primitive::Plane(_) => None,
             Primitive::Shape { placement, .. }
             | Primitive::Mesh { placement, .. }
             | Primitive::Solid { placement, .. }
@@ -84,13 +137,14 @@ impl Space {
     pub fn shape(&self, primitive: &Primitive) -> Option<Shape> {
         match primitive {
             Primitive::Sphere(sphere) => Some(Shape::Sphere(*sphere)),
+            Primitive::Plane(plane) => Some(Shape::Plane(*plane)),
             Primitive::Shape { shape, .. } => Some(self.shapes[*shape as usize]),
             _ => None,
         }
     }
 
-    /// Fills in where on its object an interaction is, and (u, v) where the part of the primitive is given: given in this space for shapes that were brought here, and else in the
-    /// primitive's own, which is the object's.
+    /// Fills in where on its object an interaction is, and (u, v) where the part of the primitive is given. The interaction is in
+    /// this space for shapes that were brought here, and else in the primitive's own, which is the object's.
     pub fn locate_on_object(
         &self,
         primitive: &Primitive,
@@ -131,50 +185,66 @@ impl Space {
     }
 
     /// The nearest hit of a ray up to `t_max`, and its primitive; of several at the same distance, that of the lowest primitive.
-    /// `test` is given a primitive and a distance beyond which hits do not count; it may still return them.
+    /// `test` is given a primitive that is not tested here, whether it is opaque, and a distance beyond which hits do not
+    /// count; it may still return them.
     #[inline]
-    pub fn nearest<H: Candidate>(
+    pub(super) fn nearest(
         &self,
         ray: &Ray,
+        touching: Touching,
         t_max: f64,
-        mut test: impl FnMut(u32, &Primitive, f64) -> Option<H>,
-    ) -> Option<(u32, H)> {
-        let mut nearest = None;
+        mut test: impl FnMut(&Primitive, bool, f64) -> Option<InnerHit>,
+    ) -> Option<(u32, InnerHit)> {
+        let mut nearest: Option<(u32, InnerHit)> = None;
         let mut limit = t_max;
-        let first_alone = self.first_alone();
         // The unbounded ones before the rest, since a floor shortens the way through it.
-        for (primitive, index) in self.primitives[first_alone..].iter().zip(first_alone as u32..) {
-            if let Some(hit) = test(index, primitive, limit)
+        for (primitive, index) in self.primitives[self.first_alone..].iter().zip(self.first_alone as u32..) {
+            let is_opaque = self.attributes[index as usize].is_opaque;
+            if let Some(hit) = meet(primitive, is_opaque, ray, touching, limit, &mut test)
                 && (hit.t() < limit || hit.t() == limit && nearest.is_none())
             {
                 limit = hit.t();
                 nearest = Some((index, hit));
             }
         }
-        if first_alone == 0 {
+        if !self.handful.is_empty() {
+            self.handful.any(ray, |index| {
+                if let Primitive::Sphere(sphere) = &self.primitives[index as usize]
+                    && let Some(hit) = sphere.intersect_likely(ray, 0.0, f64::INFINITY)
+                {
+                    let hit = touching.candidate(hit.into(), self.attributes[index as usize].is_opaque);
+                    // Of equals the lowest, which is not the one without bounds that was found before.
+                    if hit.t() < limit || hit.t() == limit && nearest.as_ref().is_none_or(|(other, _)| index < *other) {
+                        limit = hit.t();
+                        nearest = Some((index, hit));
+                    }
+                }
+                false
+            });
             return nearest;
         }
-        let bounded = self.bvh.closest(ray, limit, |index, limit| test(index, &self.primitives[index as usize], limit));
+        if self.first_alone == 0 {
+            return nearest;
+        }
+        let bounded = self.bvh.closest(ray, limit, |index, limit| {
+            let is_opaque = self.attributes[index as usize].is_opaque;
+            meet(&self.primitives[index as usize], is_opaque, ray, touching, limit, &mut test)
+        });
         bounded.or(nearest)
-    }
-
-    /// From which primitive on they are tested one by one: those without bounds, or all where there is but a handful, which
-    /// is tested faster than its boxes are.
-    #[inline]
-    fn first_alone(&self) -> usize {
-        if self.bounds.len() <= HANDFUL { 0 } else { self.bounds.len() }
     }
 
     /// Visits every primitive whose box a ray passes before `t_max`, in no particular order, until `visit` says it is enough.
     /// True where it did.
     #[inline]
     pub fn any(&self, ray: &Ray, t_max: f64, mut visit: impl FnMut(u32, &Primitive) -> bool) -> bool {
-        let first_alone = self.first_alone();
-        for (index, primitive) in self.primitives.iter().enumerate().skip(first_alone) {
-            if visit(index as u32, primitive) {
+        for (primitive, index) in self.primitives[self.first_alone..].iter().zip(self.first_alone as u32..) {
+            if visit(index, primitive) {
                 return true;
             }
         }
-        first_alone > 0 && self.bvh.any(ray, t_max, |index| visit(index, &self.primitives[index as usize]))
+        if !self.handful.is_empty() {
+            return self.handful.any(ray, |index| visit(index, &self.primitives[index as usize]));
+        }
+        self.first_alone > 0 && self.bvh.any(ray, t_max, |index| visit(index, &self.primitives[index as usize]))
     }
 }

@@ -45,8 +45,6 @@ pub struct Sink<'a, O> {
 pub struct Spawn {
     /// Reflected or refracted.
     pub kind: RayKind,
-    /// The ray.
-    pub ray: Ray,
     /// The share of the parent's throughput that it carries.
     pub weight: Rgb,
     /// The bodies it travels in.
@@ -94,9 +92,10 @@ impl<O: Observer> Sink<'_, O> {
         self.observer.total_internal_reflection(task.id);
     }
 
-    /// Adds a ray to the next generation, one deeper than its parent, unless the limits cut it.
+    /// Adds a ray to the next generation, one deeper than its parent, unless the limits cut it. Where they do, the ray is
+    /// not even asked for.
     #[inline]
-    pub fn spawn(&mut self, parent: &RayTask, spawn: Spawn) {
+    pub fn spawn(&mut self, parent: &RayTask, spawn: Spawn, ray: impl FnOnce() -> Ray) {
         let throughput = parent.throughput * spawn.weight;
         // A share that is nothing at all is no ray: an interface with a black coefficient spawns none, unless rays are counted.
         if throughput.is_black() && !self.rules.weightless_rays {
@@ -119,9 +118,9 @@ impl<O: Observer> Sink<'_, O> {
             RayKind::Camera => self.statistics.camera_rays += 1,
         }
         self.statistics.max_depth = self.statistics.max_depth.max(u32::from(parent.depth) + 1);
-        let Spawn { kind, ray, media, band, .. } = spawn;
+        let Spawn { kind, media, band, .. } = spawn;
         let depth = parent.depth + 1;
-        self.push(RayTask { ray, throughput, media, depth, passes: 0, kind, band, ..*parent }, parent.id);
+        self.push(RayTask { ray: ray(), throughput, media, depth, passes: 0, kind, band, ..*parent }, parent.id);
     }
 
     /// Lets a ray go on behind a boundary without effect, as the ray it was.
@@ -134,6 +133,7 @@ impl<O: Observer> Sink<'_, O> {
         self.push(RayTask { ray, media, passes: task.passes + 1, ..*task }, task.id);
     }
 
+    #[inline]
     fn push(&mut self, mut task: RayTask, parent: u32) {
         task.id = *self.next_id;
         task.parent = parent;

@@ -73,7 +73,14 @@ impl Integrator for Whitted {
         let interaction = scene.interaction(&task.ray, hit);
         out.met(task, Some(&interaction));
         let material = &scene.materials[interaction.material as usize];
-        let bsdf = material.bsdf(&scene.textures, &interaction);
+        let evaluated;
+        let bsdf = match material.constant_bsdf() {
+            Some(constant) if interaction.vertex_color.is_none() => constant,
+            _ => {
+                evaluated = material.bsdf(&scene.textures, &interaction);
+                &evaluated
+            }
+        };
 
         let leaving = interaction.is_outward(task.ray.direction);
         let crossing = material.body.as_ref().map(|body| {
@@ -89,7 +96,7 @@ impl Integrator for Whitted {
         }
 
         let wo = -task.ray.direction;
-        add_local_terms(scene, task, &interaction, &bsdf, wo, out);
+        add_local_terms(scene, task, &interaction, bsdf, wo, out);
         if !bsdf.mirror.is_black() {
             spawn_reflected(task, &interaction, wo, bsdf.mirror, out);
         }
@@ -147,16 +154,16 @@ impl Whitted {
             out.total_internal_reflection(task);
             return reflect_share;
         };
-        let geometric = interaction.geometric_normal.face_forward(wo);
-        // On a smooth mesh the shading normal may send it back to the side it came from; then the flat one decides.
-        let direction = if geometric.dot(direction) < 0.0 {
-            direction
-        } else {
-            refract(wo, geometric, eta_before / eta_beyond).unwrap_or(-wo)
-        };
-        let ray = interaction.spawn_ray(direction);
         let weight = weight * transmit_share;
-        out.spawn(task, Spawn { kind: RayKind::Refracted, ray, weight, media: crossing.after, band });
+        out.spawn(task, Spawn { kind: RayKind::Refracted, weight, media: crossing.after, band }, || {
+            let geometric = interaction.geometric_normal.face_forward(wo);
+            // On a smooth mesh the shading normal may send it back to the side it came from; then the flat one decides.
+            interaction.spawn_ray(if geometric.dot(direction) < 0.0 {
+                direction
+            } else {
+                refract(wo, geometric, eta_before / eta_beyond).unwrap_or(-wo)
+            })
+        });
         reflect_share
     }
 }
@@ -276,13 +283,13 @@ fn spawn_reflected<O: Observer>(
     if weight.is_black() && !out.rules.weightless_rays {
         return;
     }
-    let direction = reflect(wo, consistent_normal(interaction, wo));
-    let flat = interaction.geometric_normal.face_forward(wo);
-    // On a smooth mesh the shading normal may send it through the surface; then the flat one decides.
-    let direction = if flat.dot(direction) > 0.0 { direction } else { reflect(wo, flat) };
-    let ray = interaction.spawn_ray(direction);
     let (media, band) = (task.media, task.band);
-    out.spawn(task, Spawn { kind: RayKind::Reflected, ray, weight, media, band });
+    out.spawn(task, Spawn { kind: RayKind::Reflected, weight, media, band }, || {
+        let direction = reflect(wo, consistent_normal(interaction, wo));
+        let flat = interaction.geometric_normal.face_forward(wo);
+        // On a smooth mesh the shading normal may send it through the surface; then the flat one decides.
+        interaction.spawn_ray(if flat.dot(direction) > 0.0 { direction } else { reflect(wo, flat) })
+    });
 }
 
 /// The shading normal on the viewer's side; the geometric one where the shading normal is seen from behind.

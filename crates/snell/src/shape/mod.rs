@@ -18,6 +18,7 @@ mod rectangle;
 pub(crate) mod rounding;
 mod span;
 mod sphere;
+mod sphere_pairs;
 #[cfg(test)]
 pub(crate) mod tests;
 mod torus;
@@ -31,6 +32,7 @@ pub use frustum::Frustum;
 pub use plane::Plane;
 pub use rectangle::Rectangle;
 pub use sphere::Sphere;
+pub use sphere_pairs::SpherePairs;
 pub use torus::Torus;
 
 use rounding::gamma;

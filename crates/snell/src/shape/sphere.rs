@@ -12,6 +12,12 @@ use super::rounding::gamma;
 use super::span::Span;
 use super::{Crossing, ShapeHit, SurfacePoint};
 
+/// How much further than its radius a line must be from a sphere's centre to miss it for sure, in squares and relative to the
+/// distance of the origin: 512 u, while the rounding errors of that test and of [`Sphere::span`] are less than 100 u.
+pub(super) const MISS_MARGIN: f64 = 1.0 / (1_u64 << 44) as f64;
+/// Smaller numbers than this may lose digits, and the test says nothing.
+pub(super) const MISS_REACH: f64 = 1e-280;
+
 /// All points at a distance from a centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
@@ -48,9 +54,12 @@ impl Sphere {
     /// See [`super::Shape::intersect`].
     #[inline]
     pub fn intersect(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<ShapeHit> {
-        if t_min >= 0.0 && self.is_surely_missed(ray) {
-            return None;
-        }
+        if t_min >= 0.0 && self.is_surely_missed(ray) { None } else { self.intersect_likely(ray, t_min, t_max) }
+    }
+
+    /// As [`Sphere::intersect`], for a sphere that is not one of the many that are surely missed.
+    #[inline]
+    pub(crate) fn intersect_likely(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<ShapeHit> {
         self.span(ray)?.first_between(t_min, t_max)
     }
 
@@ -68,17 +77,14 @@ impl Sphere {
     /// ray is tested with end here. Never true where it has one, not even by its own rounding.
     #[inline]
     fn is_surely_missed(&self, ray: &Ray) -> bool {
-        /// Well above the rounding errors of both sides and of the discriminant in `span`, which are less than 100 u.
-        const MARGIN: f64 = 1.0 / (1_u64 << 44) as f64;
         let (f, d) = (self.center - ray.origin, ray.direction);
         let (a, b, c) = (d.length_squared(), f.dot(d), f.length_squared());
         let squared = self.radius * self.radius;
         // From outside and away from it: the numerator and the sum that give both ends are what `span` computes.
         let is_behind = b < 0.0 && c >= squared;
-        // The line's squared distance from the centre against the squared radius, both times a. Numbers so small or so
-        // large that they lose digits are left to `span`.
-        let (distance, reach) = (c * a - b * b, a * (squared + MARGIN * c));
-        is_behind || distance > reach && reach > 1e-280 && distance < f64::INFINITY
+        // The line's squared distance from the centre against the squared radius, both times a.
+        let (distance, reach) = (c * a - b * b, a * (squared + MISS_MARGIN * c));
+        is_behind || distance > reach && reach > MISS_REACH && distance < f64::INFINITY
     }
 
     pub(super) fn crossings(&self, ray: &Ray, out: &mut Vec<Crossing>) {
