@@ -72,14 +72,14 @@ impl Dispersion {
     }
 
     /// The bands, with their shares of white, that a ray of all light splits into at the boundary between two bodies, for
-    /// the sample of that number in its pixel's sequence; `None` where it stays together.
+    /// a sample with that number of a place to split; `None` where it stays together.
     pub fn split(
         &self,
         scene: &CompiledScene,
         [before, beyond]: [Option<Inside>; 2],
         wo: Vector3,
         normal: Normal3,
-        sequence: u32,
+        place: u32,
     ) -> Option<impl Iterator<Item = (Band, Rgb)>> {
         let ends = |inside: Option<Inside>| match inside.map(|i| (i, &self.bodies[i.material as usize])) {
             Some((_, Some(indices))) => (indices.ends, true),
@@ -102,7 +102,7 @@ impl Dispersion {
         }
         let (_, shifts) =
             self.splits.iter().find(|(count, _)| f64::from(*count) >= wanted).or_else(|| self.splits.last())?;
-        let (first, end) = shifts[sequence as usize % SHIFTS.len()];
+        let (first, end) = shifts[place as usize % SHIFTS.len()];
         Some((first..end).map(|band| (Band(band), self.weights[usize::from(band)])))
     }
 

@@ -116,7 +116,7 @@ impl Whitted {
         let sides = [crossing.before, crossing.beyond];
         let split = match task.band {
             Some(_) => None,
-            None => self.dispersion.split(scene, sides, wo, boundary.normal, task.sequence),
+            None => self.dispersion.split(scene, sides, wo, boundary.normal, task.split),
         };
         let reflected = match split {
             // Each band for itself: the reflected shares come together again, since reflection does not disperse.
