@@ -3,6 +3,8 @@
 mod count;
 mod images;
 mod objects;
+#[cfg(test)]
+mod tests;
 
 use snell_math::dispersion::fraunhofer::SODIUM_D;
 use snell_math::{Point3, Ray, Rgb};

@@ -7,6 +7,8 @@
 mod blockers;
 mod placed;
 mod space;
+#[cfg(test)]
+mod tests;
 
 use snell_math::{Point3, Ray, Vector3};
 

@@ -3,6 +3,8 @@
 mod dispersion;
 mod scattering;
 mod sink;
+#[cfg(test)]
+mod sink_tests;
 mod whitted;
 
 use crate::compile::CompiledScene;

@@ -7,6 +7,8 @@
 mod adaptive;
 mod layers;
 mod settings;
+#[cfg(test)]
+mod tests;
 
 use std::sync::Mutex;
 

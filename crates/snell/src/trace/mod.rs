@@ -10,6 +10,8 @@
 //! samples share the tile. So a picture's bits do not depend on tiles or threads.
 
 mod shadow;
+#[cfg(test)]
+mod tests;
 
 use snell_math::{Point3, Ray, Rgb};
 
