@@ -133,8 +133,7 @@ fn a_prototype_within_a_prototype_stands_where_both_say() {
 
 #[test]
 fn errors_name_what_is_wrong_and_warnings_let_it_render() {
-    let mut scene = Scene::default();
-    scene.objects = vec![of(ObjectKind::Group(vec![]), 0.0, None)];
+    let mut scene = Scene { objects: vec![of(ObjectKind::Group(vec![]), 0.0, None)], ..Scene::default() };
     let compiled = CompiledScene::build(&scene).expect("nothing to see");
     assert!(compiled.warnings.is_empty() && below(&compiled, 0.0).is_none());
     let broken = Mesh { name: "torn".to_owned(), triangles: vec![[0, 1, 2]], ..Mesh::default() };

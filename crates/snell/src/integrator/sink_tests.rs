@@ -22,7 +22,7 @@ fn task(depth: u16, throughput: f32) -> RayTask {
         passes: 0,
         kind: RayKind::Camera,
         band: None,
-        sequence: 0,
+        split: 0,
     }
 }
 
