@@ -51,14 +51,17 @@ fn with(
 }
 
 fn spawn(weight: f32) -> Spawn {
-    let (media, ray) = (MediumStack::default(), Ray::new(Point3::ORIGIN, Vector3::Y));
-    Spawn { kind: RayKind::Reflected, ray, weight: Rgb::gray(weight), media, band: None }
+    Spawn { kind: RayKind::Reflected, weight: Rgb::gray(weight), media: MediumStack::default(), band: None }
+}
+
+fn upward() -> Ray {
+    Ray::new(Point3::ORIGIN, Vector3::Y)
 }
 
 #[test]
 fn rays_are_spawned_one_deeper_with_their_share() {
     let parent = task(2, 0.5);
-    let (next, tree, statistics, _) = with(RULES, &parent, |sink| sink.spawn(&parent, spawn(0.25)));
+    let (next, tree, statistics, _) = with(RULES, &parent, |sink| sink.spawn(&parent, spawn(0.25), upward));
     assert_eq!((next.len(), next[0].depth, next[0].throughput), (1, 3, Rgb::gray(0.125)));
     assert_eq!((next[0].id, next[0].parent, tree.rays.len()), (1, 0, 2));
     assert_eq!((statistics.reflected_rays, statistics.max_depth, statistics.cut_weight()), (1, 3, 0.0));
@@ -68,13 +71,13 @@ fn rays_are_spawned_one_deeper_with_their_share() {
 fn rays_too_deep_or_too_light_are_cut_and_their_weight_is_known() {
     for (depth, weight, why) in [(3, 0.5, Cut::Depth), (1, 0.009, Cut::Weight), (3, 0.009, Cut::Depth)] {
         let parent = task(depth, 1.0);
-        let (next, tree, statistics, _) = with(RULES, &parent, |sink| sink.spawn(&parent, spawn(weight)));
+        let (next, tree, statistics, _) = with(RULES, &parent, |sink| sink.spawn(&parent, spawn(weight), upward));
         assert!(next.is_empty() && statistics.reflected_rays == 0);
         assert_eq!(tree.rays[0].cuts, [(why, Rgb::gray(weight))]);
         assert!((statistics.cut_weight() - f64::from(weight)).abs() < 1e-9);
     }
     let all = Rules { min_weight: 0.0, ..RULES };
-    let (next, ..) = with(all, &task(1, 1.0), |sink| sink.spawn(&task(1, 1.0), spawn(1e-30)));
+    let (next, ..) = with(all, &task(1, 1.0), |sink| sink.spawn(&task(1, 1.0), spawn(1e-30), upward));
     assert_eq!(next.len(), 1, "none is too light");
 }
 
@@ -83,7 +86,7 @@ fn rays_of_no_weight_are_spawned_by_rule_only() {
     let parent = task(1, 1.0);
     for (rule, count) in [(false, 0), (true, 1)] {
         let rules = Rules { weightless_rays: rule, min_weight: 0.0, ..RULES };
-        let (next, tree, statistics, _) = with(rules, &parent, |sink| sink.spawn(&parent, spawn(0.0)));
+        let (next, tree, statistics, _) = with(rules, &parent, |sink| sink.spawn(&parent, spawn(0.0), upward));
         assert_eq!((next.len(), statistics.reflected_rays), (count, count as u64));
         assert!(tree.rays[0].cuts.is_empty());
     }
