@@ -51,6 +51,10 @@ impl Names {
     }
 
     pub fn tell_unused(&self, diagnostics: &mut Diagnostics) {
+        // What a mistake left out may be what would have used them.
+        if diagnostics.has_errors() {
+            return;
+        }
         let mut unused: Vec<&Name> = self.0.iter().filter(|entry| !entry.used).collect();
         unused.sort_by_key(|entry| (entry.span.source, entry.span.range.start));
         for entry in unused {
