@@ -4,8 +4,7 @@ use snell_math::{Bounds3, Normal3, Point3, Ray, Vector3};
 
 use super::placed::Placement;
 use crate::accel::{BuildError, Bvh, Candidate};
-use crate::interaction::SurfaceInteraction;
-use crate::shape::{Plane, Shape, ShapeHit, Sphere, SpherePairs};
+use crate::shape::{Plane, Shape, ShapeHit, Sphere, SpherePairs, SurfacePoint};
 use crate::texture::RELATIVE_INSET;
 
 /// No such place: no placement, no material, no inner primitive.
@@ -49,6 +48,15 @@ pub struct Attributes {
 pub struct ObjectSpace {
     pub placement: Placement,
     pub shape: Shape,
+}
+
+/// A point of a surface as its object sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct ObjectPlace {
+    pub point: Point3,
+    /// A short way into the solid.
+    pub inside: Vector3,
+    pub uv: [f64; 2],
 }
 
 /// A short way into the solid, surely longer than the point is wrong: where patterns are read.
@@ -139,32 +147,33 @@ impl Space {
         }
     }
 
-    /// Fills in where on its object an interaction is, and (u, v) where the part of the primitive is given: given in this space for shapes that were brought here, and else in the
-    /// primitive's own, which is the object's.
+    /// Where on its object a point of a primitive's surface is, with (u, v) where the part of the primitive is given. The surface
+    /// is in this space for shapes that were brought here, and else in the primitive's own, which is the object's.
+    #[inline(never)]
     pub fn locate_on_object(
         &self,
         primitive: &Primitive,
         attributes: &Attributes,
         part: Option<u32>,
-        interaction: &mut SurfaceInteraction,
-    ) {
-        let SurfaceInteraction { point, geometric_normal: normal, error, .. } = *interaction;
-        let shape = match self.object_spaces.get(attributes.object_space as usize) {
+        surface: &SurfacePoint,
+    ) -> ObjectPlace {
+        let SurfacePoint { point, geometric_normal: normal, error, uv, .. } = *surface;
+        let (mut place, shape) = match self.object_spaces.get(attributes.object_space as usize) {
             Some(ObjectSpace { placement, shape }) => {
-                interaction.object_point = placement.point_to_local(point);
+                let point = placement.point_to_local(point);
                 let normal = placement.normal_to_local(normal);
-                let error = placement.error_to_local(error);
-                interaction.object_inside = inside(interaction.object_point, normal, error);
-                part.map(|part| (*shape, part))
+                let inside = inside(point, normal, placement.error_to_local(error));
+                (ObjectPlace { point, inside, uv }, part.map(|part| (*shape, part)))
             }
             None => {
-                interaction.object_inside = inside(point, normal, error);
-                part.and_then(|part| Some((self.shape(primitive)?, part)))
+                let inside = inside(point, normal, error);
+                (ObjectPlace { point, inside, uv }, part.and_then(|part| Some((self.shape(primitive)?, part))))
             }
         };
         if let Some((shape, part)) = shape {
-            interaction.uv = shape.uv(interaction.object_point, part);
+            place.uv = shape.uv(place.point, part);
         }
+        place
     }
 
     /// The box of a primitive; all of space for one without bounds.
