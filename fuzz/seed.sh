@@ -5,12 +5,13 @@ set -euo pipefail
 cd "$(dirname "$0")"
 assets=${1:-../../shared/assets}
 limit=12k
-for target in ply obj stl nff; do
+for target in ply obj stl nff scene_toml image_decode; do
     mkdir -p "corpus/$target"
     # Inputs that once failed are the best to start from.
     regressions=../crates/snell-scene/tests/data/fuzz/$target
     if [ -d "$regressions" ]; then cp "$regressions"/* "corpus/$target/"; fi
 done
+cp ../scenes/*.toml corpus/scene_toml/
 [ -d "$assets" ] || { echo "no assets at $assets: nothing more to start from"; exit 0; }
 copy() { # target, name of the files
     find "$assets" -type f -iname "$2" -size "-$limit" -print0 | while IFS= read -r -d '' file; do
@@ -20,8 +21,11 @@ copy() { # target, name of the files
 copy ply '*.ply'
 copy stl '*.stl'
 copy nff '*.nff'
+copy image_decode '*.png'
+copy image_decode '*.jpg'
+copy image_decode '*.hdr'
 find "$assets" -type f -iname '*.obj' -size "-$limit" -print0 | while IFS= read -r -d '' file; do
     # A mesh, 0xff, and the library beside it.
     { cat "$file"; printf '\xff'; cat "${file%.*}.mtl" 2>/dev/null || true; } > "corpus/obj/$(sha1sum < "$file" | cut -c1-16)"
 done
-for target in ply obj stl nff; do echo "$target: $(find "corpus/$target" -type f | wc -l) files"; done
+for target in ply obj stl nff scene_toml image_decode; do echo "$target: $(find "corpus/$target" -type f | wc -l) files"; done

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use snell_scene::assets::{AssetError, Assets};
+use snell_scene::document::read_scene as read_document;
 use snell_scene::reader::{mesh_bounds, mesh_scene};
 use snell_scene::scene::{Mesh, ObjectKind, Shape};
 use snell_scene::{Diagnostics, Scene};
@@ -71,4 +72,31 @@ fn check_mesh(mesh: &Mesh, scene: &Scene) {
     assert!(mesh.triangle_materials.iter().all(|&m| usize::from(m) < mesh.materials.len()));
     assert!(mesh.materials.iter().all(|m| m.index() < scene.materials.len()));
     assert!(mesh_bounds(mesh).is_finite());
+}
+
+/// The files that a fuzzed scene may name: a mesh under every name that ends in `.obj`, and a few bytes under `.png`.
+struct Beside;
+
+impl Assets for Beside {
+    fn read(&self, resolved: &str) -> Result<Arc<[u8]>, AssetError> {
+        match resolved.rsplit_once('.') {
+            Some((_, "obj")) => Ok(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".as_slice().into()),
+            Some((_, "png")) => Ok(b"pixels".as_slice().into()),
+            _ => Err(AssetError::NotFound),
+        }
+    }
+}
+
+/// Reads a scene file and checks that there is a scene or an error, never both, and that places lie in their text.
+pub fn read_scene(name: &str, bytes: &[u8]) {
+    let (scene, diagnostics) = read_document(name, bytes, &Beside, &[]);
+    assert_ne!(scene.is_some(), diagnostics.has_errors());
+    assert!(diagnostics.list.len() < 1000);
+    for diagnostic in &diagnostics.list {
+        assert!(!diagnostic.message.is_empty());
+        if let Some((span, _)) = &diagnostic.place {
+            assert!(span.range.end <= diagnostics.sources.get(span.source).text.len());
+            diagnostics.sources.location(span);
+        }
+    }
 }

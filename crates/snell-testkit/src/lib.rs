@@ -5,9 +5,11 @@
 
 pub mod degenerate;
 pub mod golden;
+mod long;
 mod rng;
 mod sabotage;
 
 pub use golden::assert_golden;
+pub use long::long_tests;
 pub use rng::TestRng;
 pub use sabotage::must_fail;

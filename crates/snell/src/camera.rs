@@ -192,6 +192,15 @@ impl Camera {
         [(x - w.left) / (w.right - w.left), (w.top - y) / (w.top - w.bottom)]
     }
 
+    /// The angle in radians that a pixel in the middle of the picture is seen under; for an orthographic camera, whose pixels
+    /// have none, that of a picture which is 40° wide.
+    pub fn pixel_angle(&self) -> f64 {
+        match self.projection {
+            Projection::Perspective => (self.window.right - self.window.left) / self.cells[0],
+            Projection::Orthographic => portable::radians(40.0) / self.cells[0],
+        }
+    }
+
     /// The unit axes of eye space in the world: right (u), up (v), back (w).
     pub fn axes(&self) -> [Vector3; 3] {
         [self.right, self.up, self.back]

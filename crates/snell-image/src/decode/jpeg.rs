@@ -27,7 +27,7 @@ pub fn decode(bytes: &[u8], limits: &Limits) -> Result<Picture, DecodeError> {
     let (width, height) = walk_markers(bytes)?;
     limits.check(FORMAT, width, height, COLOR_BYTES + WORKING_BYTES)?;
 
-    // Without SIMD, since the picture must be the same on every machine.
+    // Without SIMD, which Cargo.toml switches off too, since the picture must be the same on every machine.
     let options = DecoderOptions::new_safe()
         .set_use_unsafe(false)
         .set_strict_mode(false)

@@ -44,6 +44,15 @@ pub struct Bands {
     bands: Vec<Band>,
 }
 
+/// Which wavelength stands for a band.
+#[derive(Clone, Copy)]
+enum Place {
+    /// The mean by colour content: the best for a band by itself.
+    Mean,
+    /// The middle by the density of bands: even over splits that are shifted against each other.
+    Middle,
+}
+
 /// Weights are multiples of one over this.
 const UNIT: f64 = 1_048_576.0;
 /// Bins of one nanometre, which the bands are made of.
@@ -61,12 +70,13 @@ impl Bands {
             let band = Band { wavelength_nm: fraunhofer::SODIUM_D, range_nm: VISIBLE_NM, weight: Rgb::WHITE };
             return Self { bands: vec![band] };
         }
-        Self::split(count.min(Self::MAX), 0.0, density)
+        Self::split(count.min(Self::MAX), 0.0, Place::Mean, density)
     }
 
-    /// The same, but all borders between bands moved towards violet by a share of a band, `shift` in [0, 1); what is left over at
-    /// the red end is one band more. Samples of a pixel that are split at different shifts see different wavelengths, and
-    /// their mean is as good as one of more bands.
+    /// A split for one of several samples whose mean is wanted: all borders between bands are moved towards violet by a share
+    /// of a band, `shift` in [0, 1) (anything else counts as 0); what is left over at the red end is one band more. A band's
+    /// wavelength is in its middle by the density of bands, so that the wavelengths of samples at even shifts are even
+    /// too, and their mean is as good as that of many more bands.
     ///
     /// ```
     /// use snell_math::{Rgb, spectrum::Bands};
@@ -76,10 +86,11 @@ impl Bands {
     /// ```
     #[must_use]
     pub fn shifted(count: u32, shift: f64) -> Self {
-        if count <= 1 || !(shift > 0.0 && shift < 1.0) {
+        if count <= 1 {
             return Self::new(count);
         }
-        Self::split(count.min(Self::MAX), shift, density)
+        let shift = if (0.0..1.0).contains(&shift) { shift } else { 0.0 };
+        Self::split(count.min(Self::MAX), shift, Place::Middle, density)
     }
 
     /// How many there are, at least 1.
@@ -100,7 +111,7 @@ impl Bands {
 
     /// Splits so that every band holds the same share of a density, which is given wavelength and spectral colour; with a
     /// shift, all but the first and the last.
-    fn split(count: u32, shift: f64, density: impl Fn(f64, [f64; 3]) -> f64) -> Self {
+    fn split(count: u32, shift: f64, place: Place, density: impl Fn(f64, [f64; 3]) -> f64) -> Self {
         let colors = spectral_colors();
         let wavelength = |position: f64| VISIBLE_NM[0] + position;
 
@@ -115,27 +126,31 @@ impl Bands {
             }
         }
 
+        // Where the running total of the density reaches a value, in bins from the violet end; a bin is taken as even.
+        let position = |wanted: f64| {
+            let bin = totals[1..BINS].partition_point(|total| total[0] < wanted);
+            let (low, high) = (totals[bin][0], totals[bin + 1][0]);
+            bin as f64 + if high > low { (wanted - low) / (high - low) } else { 1.0 }
+        };
         let whole = totals[BINS];
         let quantum = |value: f64, of: f64| (value / of * UNIT).round();
-        let mut bin = 0;
-        let (mut start, mut before) = (0.0, [0.0; 6]);
         let last = if shift > 0.0 { count + 1 } else { count };
         let mut bands = Vec::with_capacity(last as usize);
+        let (mut start, mut before) = (0.0, [0.0; 6]);
         for number in 1..=last {
             let wanted = whole[0] * (f64::from(number) - shift) / f64::from(count);
-            while bin + 1 < BINS && totals[bin + 1][0] < wanted {
-                bin += 1;
-            }
-            // The border is inside the bin, which is taken as even.
-            let (low, high) = (totals[bin], totals[bin + 1]);
-            let part = if number == last { 1.0 } else { (wanted - low[0]) / (high[0] - low[0]) };
-            let end = bin as f64 + part;
-            let after: [f64; 6] = std::array::from_fn(|i| low[i] + (high[i] - low[i]) * part);
+            let end = if number == last { BINS as f64 } else { position(wanted) };
+            let bin = (end as usize).min(BINS - 1);
+            let after: [f64; 6] =
+                std::array::from_fn(|i| totals[bin][i] + (totals[bin + 1][i] - totals[bin][i]) * (end - bin as f64));
             // Rounding the running totals, not the weights, makes the weights sum to the last total: exactly one.
             let weight = |i: usize| ((quantum(after[i], whole[i]) - quantum(before[i], whole[i])) / UNIT) as f32;
-            let mean = (after[5] - before[5]) / (after[4] - before[4]);
+            let represented = match place {
+                Place::Mean => (after[5] - before[5]) / (after[4] - before[4]),
+                Place::Middle => wavelength(position(0.5 * (before[0] + after[0]))),
+            };
             bands.push(Band {
-                wavelength_nm: mean.max(wavelength(start)).min(wavelength(end)),
+                wavelength_nm: represented.max(wavelength(start)).min(wavelength(end)),
                 range_nm: [wavelength(start), wavelength(end)],
                 weight: Rgb::new(weight(1), weight(2), weight(3)),
             });
@@ -214,7 +229,7 @@ mod tests {
     #[test]
     fn shifted_bands_sum_to_exactly_one_too_and_cover_the_same_range() {
         for count in [2, 3, 8, 16, Bands::MAX] {
-            for shift in [1e-9, 1.0 / 16.0, 0.5, 15.0 / 16.0, 0.999_999] {
+            for shift in [0.0, 1e-9, 1.0 / 16.0, 0.5, 15.0 / 16.0, 0.999_999] {
                 let bands = Bands::shifted(count, shift);
                 let weights: Vec<Rgb> = bands.iter().map(|band| band.weight).collect();
                 assert!(sums_exactly(&weights), "{count} bands shifted by {shift}");
@@ -229,8 +244,8 @@ mod tests {
                 }
             }
         }
-        for odd in [0.0, 1.0, -0.5, f64::NAN] {
-            assert_eq!(Bands::shifted(8, odd), Bands::new(8));
+        for odd in [1.0, -0.5, f64::NAN] {
+            assert_eq!(Bands::shifted(8, odd), Bands::shifted(8, 0.0));
         }
     }
 
@@ -355,8 +370,9 @@ mod tests {
     #[test]
     fn a_prism_is_drawn_better_than_with_equal_steps_of_wavelength() {
         for count in [8, 16, 32] {
-            let equal_steps = Bands::split(count, 0.0, |nm, _| if (400.0..700.0).contains(&nm) { 1.0 } else { 1e-9 });
-            let equal_luminance = Bands::split(count, 0.0, |nm, _| color_matching(nm)[1]);
+            let equal_steps =
+                Bands::split(count, 0.0, Place::Mean, |nm, _| if (400.0..700.0).contains(&nm) { 1.0 } else { 1e-9 });
+            let equal_luminance = Bands::split(count, 0.0, Place::Mean, |nm, _| color_matching(nm)[1]);
             for slit in [0.1, 0.3] {
                 let ours = slit_error(&Bands::new(count), slit);
                 assert!(ours < slit_error(&equal_steps, slit), "{count} bands, slit {slit}");

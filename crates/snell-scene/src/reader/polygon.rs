@@ -115,6 +115,7 @@ impl Triangulator {
         self.place.resize(count as usize, NONE);
         (0..count).for_each(|corner| self.classify(corner));
 
+        self.queue.clear();
         self.queued.clear();
         self.queued.resize(count as usize, false);
         // Every second corner first: triangles become less thin than in the order of the ring.

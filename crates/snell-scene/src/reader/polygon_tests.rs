@@ -58,6 +58,19 @@ proptest! {
     }
 
     #[test]
+    fn a_polygon_does_not_depend_on_those_before_it(
+        polygons in prop::collection::vec(prop::collection::vec(prop::array::uniform3(-3i8..3), 0..30), 0..8),
+    ) {
+        let mut triangulator = Triangulator::default();
+        for polygon in polygons {
+            let corners: Vec<_> = polygon.iter().map(|p| Point3::from(p.map(f64::from))).collect();
+            let mut triangles = Vec::new();
+            triangulator.triangulate(corners.iter().map(|p| p.to_array()), &mut triangles).unwrap();
+            prop_assert_eq!(triangles, triangulate(&corners).unwrap());
+        }
+    }
+
+    #[test]
     fn any_numbers_at_all_give_triples_in_range(points in prop::collection::vec(prop::array::uniform3(prop::num::f64::ANY), 0..40)) {
         let corners: Vec<_> = points.iter().map(|&p| Point3::from(p)).collect();
         for t in triangulate(&corners).unwrap() {

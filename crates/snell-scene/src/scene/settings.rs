@@ -11,6 +11,9 @@ pub struct Settings {
     pub depth: u32,
     /// A ray whose weight to its pixel is below this in every component is not followed but counted as cut; 0 follows all.
     pub min_weight: f32,
+    /// Whether a surface spawns its rays even where they carry nothing, as at a boundary that reflects no light. The picture is
+    /// the same; what is counted is what the Standard Procedural Databases' rules count.
+    pub weightless_rays: bool,
     /// How pixels are sampled.
     pub antialiasing: Antialiasing,
     /// What blocks light.
@@ -33,6 +36,7 @@ impl Default for Settings {
             height: 480,
             depth: 12,
             min_weight: 1.0 / 1024.0,
+            weightless_rays: false,
             antialiasing: Antialiasing::Adaptive,
             shadows: Shadows::Filtered,
             bands: 8,

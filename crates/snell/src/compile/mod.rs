@@ -1,7 +1,10 @@
 //! From the scene as its author described it to the flat, immutable form that is traced.
 
+mod count;
 mod images;
 mod objects;
+#[cfg(test)]
+mod tests;
 
 use snell_math::dispersion::fraunhofer::SODIUM_D;
 use snell_math::{Point3, Ray, Rgb};

@@ -5,6 +5,7 @@ use snell_math::{Bounds3, Transform};
 use snell_scene::scene::{self, Object, ObjectKind, Scene};
 use snell_scene::{Diagnostic, Id, Severity};
 
+use super::count::{COPIED_PROTOTYPE, refuse_too_many};
 use crate::accel::BuildError;
 use crate::csg::{CsgNode, CsgSolid};
 use crate::geometry::{Attributes, Geometry, NONE, ObjectSpace, Placement, Primitive, Space};
@@ -12,12 +13,6 @@ use crate::material::Material;
 use crate::shape::Shape;
 use crate::shape::triangle_mesh::TriangleMesh;
 use crate::texture::Textures;
-
-/// A prototype of no more primitives than this is copied where it stands: finding them in a hierarchy of their own would
-/// cost more than the copies.
-const COPIED_PROTOTYPE: u64 = 4;
-/// More primitives than this are refused: a scene of prototypes within prototypes can ask for any number.
-const MAX_PRIMITIVES: u64 = 20_000_000;
 
 /// Compiles all objects of a scene, with their names. `materials` is the scene's list with the one for objects without
 /// material at its end. `None` where there is an error among the diagnostics.
@@ -27,6 +22,10 @@ pub fn compile(
     textures: &Textures,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Option<(Geometry, Vec<String>)> {
+    if let Some(error) = refuse_too_many(scene) {
+        diagnostics.push(error);
+        return None;
+    }
     let descriptions: Vec<&scene::Mesh> = scene.meshes.iter().collect();
     let compiled: Vec<Result<TriangleMesh, _>> = descriptions.par_iter().map(|mesh| TriangleMesh::new(mesh)).collect();
     let mut meshes = Vec::with_capacity(compiled.len());
@@ -50,7 +49,6 @@ pub fn compile(
         solids: Vec::new(),
         names: Vec::new(),
         next_object: 0,
-        primitives: 0,
         diagnostics,
     };
     for prototype in scene.prototypes.iter() {
@@ -76,7 +74,6 @@ struct Compiler<'a> {
     solids: Vec<CsgSolid>,
     names: Vec<String>,
     next_object: u32,
-    primitives: u64,
     diagnostics: &'a mut Vec<Diagnostic>,
 }
 
@@ -98,15 +95,12 @@ struct Context {
 }
 
 impl Compiler<'_> {
-    /// Flattens objects into a space of their own; `None` where they are too many.
+    /// Flattens objects into a space of their own; `None` where there is an error among the diagnostics.
     fn space(&mut self, objects: &[Object]) -> Option<Space> {
         let mut parts = Parts::default();
         let context = Context { space_from_parent: Transform::IDENTITY, material: NONE };
         for object in objects {
             self.add(object, context, &mut parts);
-        }
-        if self.primitives > MAX_PRIMITIVES {
-            return None;
         }
         let is_error = |diagnostic: &Diagnostic| diagnostic.severity == Severity::Error;
         if self.diagnostics.iter().any(is_error) {
@@ -117,9 +111,6 @@ impl Compiler<'_> {
     }
 
     fn add(&mut self, object: &Object, context: Context, parts: &mut Parts) {
-        if self.primitives > MAX_PRIMITIVES {
-            return;
-        }
         let space_from_object = context.space_from_parent * object.parent_from_object;
         let material = object.material.map_or(context.material, |id| id.index() as u32);
         let inner = Context { space_from_parent: space_from_object, material };
@@ -152,7 +143,7 @@ impl Compiler<'_> {
             Shape::Plane(plane) if placement == NONE => Primitive::Plane(plane),
             shape => Primitive::Shape { shape: parts.add_shape(shape), placement },
         };
-        self.push(parts, bounds, primitive, attributes, object);
+        parts.push(bounds, primitive, attributes);
     }
 
     fn add_mesh(&mut self, object: &Object, mesh: Id<scene::Mesh>, context: Context, parts: &mut Parts) {
@@ -185,7 +176,7 @@ impl Compiler<'_> {
         };
         let attributes = self.attributes(object, &description.name, material, is_opaque);
         let primitive = Primitive::Mesh { mesh: mesh.index() as u32, placement };
-        self.push(parts, bounds, primitive, attributes, object);
+        parts.push(bounds, primitive, attributes);
     }
 
     fn add_solid(&mut self, object: &Object, context: Context, parts: &mut Parts) {
@@ -213,7 +204,7 @@ impl Compiler<'_> {
         let attributes = self.attributes(object, "solid", material, is_opaque);
         let primitive = Primitive::Solid { solid: self.solids.len() as u32, placement };
         self.solids.push(solid);
-        self.push(parts, bounds, primitive, attributes, object);
+        parts.push(bounds, primitive, attributes);
     }
 
     /// Appends the nodes of a solid or of a part of one, children before their parents, and returns the place of the last.
@@ -273,7 +264,7 @@ impl Compiler<'_> {
         let attributes = self.attributes(object, &prototype.name, material, is_opaque);
         let placement = parts.add_placement(space_from_object);
         let primitive = Primitive::Instance { prototype: id.index() as u32, placement, material };
-        self.push(parts, bounds, primitive, attributes, object);
+        parts.push(bounds, primitive, attributes);
     }
 
     fn add_grid(&mut self, grid: &scene::Grid, context: Context, parts: &mut Parts) {
@@ -288,9 +279,6 @@ impl Compiler<'_> {
                         grid.step[0] * f64::from(i) + grid.step[1] * f64::from(j) + grid.step[2] * f64::from(k);
                     let space_from_parent = context.space_from_parent * Transform::translate(offset);
                     self.add(&grid.of, Context { space_from_parent, ..context }, parts);
-                    if self.primitives > MAX_PRIMITIVES {
-                        return;
-                    }
                 }
             }
         }
@@ -309,29 +297,17 @@ impl Compiler<'_> {
         }
         Attributes { object: number, material, object_space: NONE, is_opaque }
     }
-
-    fn push(
-        &mut self,
-        parts: &mut Parts,
-        bounds: Bounds3,
-        primitive: Primitive,
-        attributes: Attributes,
-        object: &Object,
-    ) {
-        self.primitives += 1;
-        if self.primitives == MAX_PRIMITIVES + 1 {
-            let message = format!("the scene has more than {MAX_PRIMITIVES} objects, counting copies");
-            self.diagnostics.push(Diagnostic::error(message).at_optional(object.span.clone(), "reached here"));
-        }
-        if bounds.is_finite() {
-            parts.bounded.push((bounds, primitive, attributes));
-        } else if !bounds.is_empty() {
-            parts.unbounded.push((primitive, attributes));
-        }
-    }
 }
 
 impl Parts {
+    fn push(&mut self, bounds: Bounds3, primitive: Primitive, attributes: Attributes) {
+        if bounds.is_finite() {
+            self.bounded.push((bounds, primitive, attributes));
+        } else if !bounds.is_empty() {
+            self.unbounded.push((primitive, attributes));
+        }
+    }
+
     fn add_shape(&mut self, shape: Shape) -> u32 {
         self.shapes.push(shape);
         self.shapes.len() as u32 - 1

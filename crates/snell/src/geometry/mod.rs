@@ -7,6 +7,8 @@
 mod blockers;
 mod placed;
 mod space;
+#[cfg(test)]
+mod tests;
 
 use snell_math::{Point3, Ray, Vector3};
 
@@ -76,7 +78,10 @@ pub(crate) struct LocalHit {
 }
 
 /// A hit within one primitive of the world.
+#[derive(Clone, Copy)]
 struct InnerHit {
+    /// What hits are compared by, see [`Touching`].
+    key: f64,
     inner: u32,
     local: LocalHit,
 }
@@ -84,14 +89,37 @@ struct InnerHit {
 impl Candidate for InnerHit {
     #[inline]
     fn t(&self) -> f64 {
-        self.local.t
+        self.key
     }
 }
 
-impl Candidate for LocalHit {
+/// Surfaces nearer to each other along a ray than this, relative to the coordinates of where that is, touch: rounding alone puts
+/// one before the other or behind it.
+const TOUCHING: f64 = 1.0 / (1_u64 << 44) as f64;
+
+/// How far apart along one ray surfaces are that touch.
+///
+/// Where a transparent surface touches an opaque one, as a glass block touches the table that it stands on, a ray meets the
+/// opaque one: there is no gap between them to look through. So transparent surfaces count as that much farther away.
+#[derive(Clone, Copy, Debug)]
+struct Touching(f64);
+
+impl Touching {
     #[inline]
-    fn t(&self) -> f64 {
-        self.t
+    fn along(ray: &Ray) -> Self {
+        Self(TOUCHING * ray.origin.max_abs())
+    }
+
+    /// What hits are compared by.
+    #[inline]
+    fn key(self, t: f64, is_opaque: bool) -> f64 {
+        if is_opaque { t } else { t + (TOUCHING * t + self.0) }
+    }
+
+    /// A hit to be compared with others.
+    #[inline]
+    fn candidate(self, local: LocalHit, is_opaque: bool) -> InnerHit {
+        InnerHit { key: self.key(local.t, is_opaque), inner: NONE, local }
     }
 }
 
@@ -99,13 +127,6 @@ impl From<ShapeHit> for LocalHit {
     #[inline]
     fn from(ShapeHit { t, part }: ShapeHit) -> Self {
         Self { t, place: LocalPlace::of_part(part) }
-    }
-}
-
-impl From<ShapeHit> for InnerHit {
-    #[inline]
-    fn from(hit: ShapeHit) -> Self {
-        Self { inner: NONE, local: hit.into() }
     }
 }
 
@@ -143,18 +164,26 @@ impl Geometry {
         hits.extend(tasks.iter().map(|task| self.intersect(&task.ray, f64::INFINITY, scratch)));
     }
 
-    /// The nearest hit with 0 < t ≤ `t_max`. Of several at the same distance, the one of the lowest primitive.
+    /// The nearest hit with 0 < t ≤ `t_max`. Of several at the same distance, the one of the lowest primitive; but an opaque
+    /// one before any transparent one that touches it.
     #[inline]
     pub fn intersect(&self, ray: &Ray, t_max: f64, scratch: &mut QueryScratch) -> Option<Hit> {
-        let found = self.world.nearest(ray, t_max, |primitive, t_max| {
+        let touching = Touching::along(ray);
+        let found = self.world.nearest(ray, touching, t_max, |primitive, is_opaque, t_max| {
             if let Primitive::Instance { prototype, placement, .. } = primitive {
-                return self.intersect_instance(*prototype, *placement, ray, t_max, scratch);
+                return self.intersect_instance(*prototype, *placement, ray, touching, t_max, scratch);
             }
             // Those at `t_max` count.
             let local = self.intersect_primitive(&self.world, primitive, ray, 0.0, t_max.next_up(), scratch)?;
-            Some(InnerHit { inner: NONE, local })
+            Some(touching.candidate(local, is_opaque))
         });
-        found.map(|(primitive, InnerHit { inner, local })| Hit { t: local.t, primitive, inner, place: local.place })
+        found.map(|(primitive, InnerHit { inner, local, .. })| Hit { t: local.t, primitive, inner, place: local.place })
+    }
+
+    /// True where a hit is where its ray begins, but for rounding: with a surface that touches the one the ray was spawned at.
+    #[inline]
+    pub fn is_at_origin(ray: &Ray, hit: &Hit) -> bool {
+        hit.t <= Touching::along(ray).0
     }
 
     /// The nearest hit of a world ray with an instance.
@@ -164,15 +193,17 @@ impl Geometry {
         prototype: u32,
         placement: u32,
         ray: &Ray,
+        touching: Touching,
         t_max: f64,
         scratch: &mut QueryScratch,
     ) -> Option<InnerHit> {
         let ray = self.world.placements[placement as usize].to_local(ray);
         let space = &self.prototypes[prototype as usize];
-        let test = |primitive: &Primitive, t_max: f64| {
-            self.intersect_primitive(space, primitive, &ray, 0.0, t_max.next_up(), scratch)
-        };
-        space.nearest(&ray, t_max, test).map(|(inner, local)| InnerHit { inner, local })
+        let found = space.nearest(&ray, touching, t_max, |primitive, is_opaque, t_max| {
+            let local = self.intersect_primitive(space, primitive, &ray, 0.0, t_max.next_up(), scratch)?;
+            Some(touching.candidate(local, is_opaque))
+        });
+        found.map(|(inner, hit)| InnerHit { inner, ..hit })
     }
 
     /// The nearest hit with `t_min < t < t_max`, or a little above, of a ray, given in the primitive's space, with one

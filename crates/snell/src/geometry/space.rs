@@ -3,6 +3,7 @@
 use snell_math::{Bounds3, Normal3, Point3, Ray, Vector3};
 
 use super::placed::Placement;
+use super::{InnerHit, Touching};
 use crate::accel::{BuildError, Bvh, Candidate};
 use crate::shape::{Plane, Shape, ShapeHit, Sphere, SpherePairs, SurfacePoint};
 use crate::texture::RELATIVE_INSET;
@@ -68,17 +69,20 @@ fn inside(point: Point3, outward: Normal3, error: f64) -> Vector3 {
 ///
 /// Inlined where it is used, which is in the loops over primitives.
 #[inline(always)]
-fn meet<H: From<ShapeHit>>(
+fn meet(
     primitive: &Primitive,
+    is_opaque: impl FnOnce() -> bool,
     ray: &Ray,
+    touching: Touching,
     limit: f64,
-    test: &mut impl FnMut(&Primitive, f64) -> Option<H>,
-) -> Option<H> {
-    match primitive {
-        Primitive::Sphere(sphere) => sphere.intersect(ray, 0.0, f64::INFINITY).map(H::from),
-        Primitive::Plane(plane) => plane.intersect(ray, 0.0, f64::INFINITY).map(H::from),
-        primitive => test(primitive, limit),
-    }
+    test: &mut impl FnMut(&Primitive, bool, f64) -> Option<InnerHit>,
+) -> Option<InnerHit> {
+    let hit = match primitive {
+        Primitive::Sphere(sphere) => sphere.intersect(ray, 0.0, f64::INFINITY),
+        Primitive::Plane(plane) => plane.intersect(ray, 0.0, f64::INFINITY),
+        primitive => return test(primitive, is_opaque(), limit),
+    };
+    hit.map(|hit| touching.candidate(hit.into(), is_opaque()))
 }
 
 /// Primitives with their hierarchy: bounded ones first, then those without bounds, such as planes.
@@ -190,20 +194,22 @@ impl Space {
     }
 
     /// The nearest hit of a ray up to `t_max`, and its primitive; of several at the same distance, that of the lowest primitive.
-    /// `test` is given a primitive that is not tested here, and a distance beyond which hits do not count; it may still return
-    /// them.
+    /// `test` is given a primitive that is not tested here, whether it is opaque, and a distance beyond which hits do not
+    /// count; it may still return them.
     #[inline]
-    pub fn nearest<H: Candidate + From<ShapeHit>>(
+    pub(super) fn nearest(
         &self,
         ray: &Ray,
+        touching: Touching,
         t_max: f64,
-        mut test: impl FnMut(&Primitive, f64) -> Option<H>,
-    ) -> Option<(u32, H)> {
-        let mut nearest = None;
+        mut test: impl FnMut(&Primitive, bool, f64) -> Option<InnerHit>,
+    ) -> Option<(u32, InnerHit)> {
+        let mut nearest: Option<(u32, InnerHit)> = None;
         let mut limit = t_max;
         // The unbounded ones before the rest, since a floor shortens the way through it.
         for (primitive, index) in self.primitives[self.first_alone..].iter().zip(self.first_alone as u32..) {
-            if let Some(hit) = meet(primitive, ray, limit, &mut test)
+            let is_opaque = || self.attributes[index as usize].is_opaque;
+            if let Some(hit) = meet(primitive, is_opaque, ray, touching, limit, &mut test)
                 && (hit.t() < limit || hit.t() == limit && nearest.is_none())
             {
                 limit = hit.t();
@@ -214,11 +220,13 @@ impl Space {
             self.handful.any(ray, |index| {
                 if let Primitive::Sphere(sphere) = &self.primitives[index as usize]
                     && let Some(hit) = sphere.intersect_likely(ray, 0.0, f64::INFINITY)
-                    // Of equals the lowest, which is not the one without bounds that was found before.
-                    && (hit.t < limit || hit.t == limit && nearest.as_ref().is_none_or(|(other, _)| index < *other))
                 {
-                    limit = hit.t;
-                    nearest = Some((index, H::from(hit)));
+                    let hit = touching.candidate(hit.into(), self.attributes[index as usize].is_opaque);
+                    // Of equals the lowest, which is not the one without bounds that was found before.
+                    if hit.t() < limit || hit.t() == limit && nearest.as_ref().is_none_or(|(other, _)| index < *other) {
+                        limit = hit.t();
+                        nearest = Some((index, hit));
+                    }
                 }
                 false
             });
@@ -227,8 +235,10 @@ impl Space {
         if self.first_alone == 0 {
             return nearest;
         }
-        let bounded =
-            self.bvh.closest(ray, limit, |index, limit| meet(&self.primitives[index as usize], ray, limit, &mut test));
+        let bounded = self.bvh.closest(ray, limit, |index, limit| {
+            let is_opaque = || self.attributes[index as usize].is_opaque;
+            meet(&self.primitives[index as usize], is_opaque, ray, touching, limit, &mut test)
+        });
         bounded.or(nearest)
     }
 

@@ -1,7 +1,10 @@
 //! What happens where a ray meets the scene: one `shade`, one file, one algorithm.
 
+mod dispersion;
 mod scattering;
 mod sink;
+#[cfg(test)]
+mod sink_tests;
 mod whitted;
 
 use crate::compile::CompiledScene;

@@ -15,6 +15,8 @@ pub struct Rules {
     pub depth: u16,
     /// Rays whose throughput is below this in every component are not followed.
     pub min_weight: f32,
+    /// Rays are spawned even where they carry nothing.
+    pub weightless_rays: bool,
     /// What blocks light.
     pub shadows: Shadows,
 }
@@ -95,8 +97,8 @@ impl<O: Observer> Sink<'_, O> {
     #[inline]
     pub fn spawn(&mut self, parent: &RayTask, spawn: Spawn, ray: impl FnOnce() -> Ray) {
         let throughput = parent.throughput * spawn.weight;
-        // A share that is nothing at all is no ray: an interface with a black coefficient spawns none.
-        if throughput.is_black() {
+        // A share that is nothing at all is no ray: an interface with a black coefficient spawns none, unless rays are counted.
+        if throughput.is_black() && !self.rules.weightless_rays {
             return;
         }
         let cut = if parent.depth >= self.rules.depth {

@@ -4,14 +4,14 @@
 //! the ambient term, then each light, then reflection, then refraction. World space; `wo` leads to the viewer, `wi` to a
 //! light, both leaving the surface.
 
-use snell_math::spectrum::{Band as SpectralBand, Bands};
-use snell_math::{Dispersion, Normal3, Rgb, Vector3};
+use snell_math::{Normal3, Rgb, Vector3};
 use snell_scene::scene::Medium;
 
+use super::dispersion::Dispersion;
 use super::{Integrator, Sink, Spawn, scattering};
 use crate::camera::{Camera, Projection, Window};
 use crate::compile::CompiledScene;
-use crate::geometry::Hit;
+use crate::geometry::{Geometry, Hit};
 use crate::interaction::SurfaceInteraction;
 use crate::light::Light;
 use crate::material::{Bsdf, Interface};
@@ -20,44 +20,26 @@ use crate::optics::{beer_lambert, fresnel_dielectric, reflect, refract};
 use crate::task::{Band, Crossing, Inside, RayKind, RayTask, ShadowQuestion, Term};
 use crate::texture::ViewProjection;
 
-/// The samples of a pixel split white light at borders shifted by these sixteenths of a band, in turn; the van der Corput
-/// sequence, so that the first few are as even as all.
-const SHIFTS: [u8; 16] = [0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15];
-
 /// Recursive ray tracing over lights without extent.
 #[derive(Clone, Debug)]
 pub struct Whitted {
-    /// White light split in several ways, one after the other: [`SHIFTS`] times `stride` places, the last ones of each empty
-    /// where it has fewer bands.
-    bands: Vec<Option<SpectralBand>>,
-    stride: usize,
-    /// For each material, its index of refraction in each band; empty where it does not disperse.
-    band_indices: Vec<Vec<f64>>,
+    dispersion: Dispersion,
     camera: Camera,
     view: ViewProjection,
 }
 
 impl Whitted {
-    /// For a scene seen by a camera, splitting white light into `bands` wavelength bands at dispersive surfaces.
+    /// For a scene seen by a camera, splitting white light into at most `bands` wavelength bands at
+    /// dispersive surfaces.
     pub fn new(scene: &CompiledScene, camera: &Camera, bands: u32) -> Self {
-        let splits: Vec<Bands> =
-            SHIFTS.map(|shift| Bands::shifted(bands, f64::from(shift) / SHIFTS.len() as f64)).into();
-        let stride = splits.iter().map(Bands::len).max().unwrap_or(1);
-        let bands: Vec<_> =
-            splits.iter().flat_map(|split| (0..stride).map(|i| split.as_slice().get(i).copied())).collect();
-        let index = |ior: &Dispersion, band: &Option<_>| band.map_or(1.0, |b: SpectralBand| ior.index(b.wavelength_nm));
-        let indices = |material: &crate::material::Material| match &material.body {
-            Some(body) if body.ior.is_dispersive() => bands.iter().map(|band| index(&body.ior, band)).collect(),
-            _ => Vec::new(),
-        };
         let [u, v, w] = camera.axes();
         let Window { left, right, bottom, top } = camera.window();
         let view = match camera.projection() {
             Projection::Perspective => ViewProjection { u, v, w, left, right, bottom, top },
             Projection::Orthographic => ViewProjection::for_orthographic(u, v, w, (right - left) / (top - bottom)),
         };
-        let band_indices = scene.materials.iter().map(indices).collect();
-        Self { bands, stride, band_indices, camera: camera.clone(), view }
+        let dispersion = Dispersion::new(scene, bands, camera.pixel_angle());
+        Self { dispersion, camera: camera.clone(), view }
     }
 
     /// What a ray sees that leaves the scene.
@@ -111,7 +93,7 @@ impl Whitted {
         let leaving = interaction.is_outward(task.ray.direction);
         let crossing = material.body.as_ref().map(|body| {
             let inside = Inside { solid: interaction.solid, material: interaction.material, priority: body.priority };
-            out.media.cross(task.media, inside, leaving)
+            out.media.cross(task.media, inside, leaving, Geometry::is_at_origin(&task.ray, hit))
         });
         // A boundary that a body of higher priority covers is not there.
         if let Some(crossing) = crossing
@@ -144,19 +126,18 @@ impl Whitted {
         out: &mut Sink<'_, O>,
     ) {
         let boundary = Boundary { interaction, crossing, interface, wo, normal: consistent_normal(interaction, wo) };
-        let disperses = |inside: Inside| !self.band_indices[inside.material as usize].is_empty();
-        let splits = task.band.is_none() && [crossing.before, crossing.beyond].into_iter().flatten().any(disperses);
-        let mut reflected = Rgb::BLACK;
-        if splits {
+        let sides = [crossing.before, crossing.beyond];
+        let split = match task.band {
+            Some(_) => None,
+            None => self.dispersion.split(scene, sides, wo, boundary.normal, task.split),
+        };
+        let reflected = match split {
             // Each band for itself: the reflected shares come together again, since reflection does not disperse.
-            let first = task.sequence as usize % SHIFTS.len() * self.stride;
-            for (number, part) in (first..).zip(self.bands[first..first + self.stride].iter().flatten()) {
-                let band = Some(Band(number as u16));
-                reflected += part.weight * self.refract_band(scene, task, &boundary, band, part.weight, out);
-            }
-        } else {
-            reflected = self.refract_band(scene, task, &boundary, task.band, Rgb::WHITE, out);
-        }
+            Some(bands) => bands.fold(Rgb::BLACK, |sum, (band, weight)| {
+                sum + weight * self.refract_band(scene, task, &boundary, Some(band), weight, out)
+            }),
+            None => self.refract_band(scene, task, &boundary, task.band, Rgb::WHITE, out),
+        };
         spawn_reflected(task, interaction, wo, reflected, out);
     }
 
@@ -171,8 +152,8 @@ impl Whitted {
         out: &mut Sink<'_, O>,
     ) -> Rgb {
         let Boundary { interaction, crossing, wo, normal, .. } = *boundary;
-        let eta_before = self.index(scene, crossing.before, band);
-        let eta_beyond = self.index(scene, crossing.beyond, band);
+        let eta_before = self.dispersion.index(scene, crossing.before, band);
+        let eta_beyond = self.dispersion.index(scene, crossing.beyond, band);
         let direction = refract(wo, normal, eta_before / eta_beyond);
         let (reflect_share, transmit_share) = boundary.shares(eta_before, eta_beyond, direction.is_some());
         let Some(direction) = direction else {
@@ -190,17 +171,6 @@ impl Whitted {
             })
         });
         reflect_share
-    }
-
-    /// The index of refraction of a body in a band; at the D line where the ray carries all light; 1 outside of all.
-    fn index(&self, scene: &CompiledScene, inside: Option<Inside>, band: Option<Band>) -> f64 {
-        match (inside, band) {
-            (Some(inside), Some(Band(band))) => {
-                let indices = &self.band_indices[inside.material as usize];
-                indices.get(usize::from(band)).copied().unwrap_or_else(|| scene.index_d(Some(inside)))
-            }
-            (inside, _) => scene.index_d(inside),
-        }
     }
 }
 
@@ -329,7 +299,7 @@ fn spawn_reflected<O: Observer>(
     weight: Rgb,
     out: &mut Sink<'_, O>,
 ) {
-    if weight.is_black() {
+    if weight.is_black() && !out.rules.weightless_rays {
         return;
     }
     let (media, band) = (task.media, task.band);

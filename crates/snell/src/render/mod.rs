@@ -7,6 +7,8 @@
 mod adaptive;
 mod layers;
 mod settings;
+#[cfg(test)]
+mod tests;
 
 use std::sync::Mutex;
 
@@ -124,10 +126,9 @@ pub fn explain(
     let job = Job { scene, integrator: &integrator, camera: &camera, settings };
     let mut tree = RayTree::default();
     let mut scratch = Scratch::default();
-    let [dx, dy] = sampling::pixel_sample(sample);
-    let ray = camera.generate_ray(f64::from(pixel[0]) + dx, f64::from(pixel[1]) + dy);
+    let (ray, split) = job.camera_sample(pixel, sampling::pixel_sample(sample), sample);
     let far = camera.far_distance(&ray);
-    job.tracer().trace([(ray, sample)], &mut scratch, &mut Statistics::default(), &mut tree, |_, _, hit| {
+    job.tracer().trace([(ray, split)], &mut scratch, &mut Statistics::default(), &mut tree, |_, _, hit| {
         *hit = hit.filter(|hit| hit.t <= far);
     });
     Ok(tree)
@@ -221,9 +222,12 @@ impl<I: Integrator> Job<'_, I> {
             if progress.is_cancelled() {
                 break;
             }
-            let rays = pixels
-                .iter()
-                .flat_map(|&pixel| samples.iter().map(move |(place, number)| (self.camera_ray(pixel, place), number)));
+            let width = self.settings.width;
+            let rays = pixels.iter().flat_map(|&pixel| {
+                samples
+                    .iter()
+                    .map(move |(place, number)| self.camera_sample([pixel % width, pixel / width], place, number))
+            });
             let colors = self.tracer().trace(rays, scratch, &mut statistics, &mut NoObserver, |number, ray, hit| {
                 let far = self.camera.far_distance(ray);
                 if hit.is_some_and(|hit| hit.t > far) {
@@ -265,16 +269,18 @@ impl<I: Integrator> Job<'_, I> {
         progress.advance(tile.len() as u64, statistics.rays());
     }
 
-    /// The ray through a place in a pixel.
+    /// The ray of a sample through a place in a pixel, and the number of the place where it splits white light.
     #[inline]
-    fn camera_ray(&self, pixel: u32, [dx, dy]: [f64; 2]) -> Ray {
-        let width = self.settings.width;
-        self.camera.generate_ray(f64::from(pixel % width) + dx, f64::from(pixel / width) + dy)
+    fn camera_sample(&self, [x, y]: [u32; 2], [dx, dy]: [f64; 2], number: u32) -> (Ray, u32) {
+        let ray = self.camera.generate_ray(f64::from(x) + dx, f64::from(y) + dy);
+        // Neighbours begin at different places, so that what one sample alone cannot show, a few of them show together.
+        (ray, BAYER[y as usize % 4][x as usize % 4] + number)
     }
 
     fn tracer(&self) -> Tracer<'_, I> {
-        let RenderSettings { depth, min_weight, shadows, .. } = *self.settings;
-        Tracer { scene: self.scene, integrator: self.integrator, rules: Rules { depth, min_weight, shadows } }
+        let RenderSettings { depth, min_weight, weightless_rays, shadows, .. } = *self.settings;
+        let rules = Rules { depth, min_weight, weightless_rays, shadows };
+        Tracer { scene: self.scene, integrator: self.integrator, rules }
     }
 
     /// The picture, or the given pixels of it, in square tiles; each is a list of pixel places.
@@ -298,6 +304,9 @@ impl<I: Integrator> Job<'_, I> {
         tiles
     }
 }
+
+/// The order of ordered dithering in four by four pixels (Bayer 1973): neighbours are far apart in it.
+const BAYER: [[u32; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
 
 /// The longest queue of camera rays at once.
 const MAX_QUEUE: usize = 1024;

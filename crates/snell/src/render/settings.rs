@@ -19,6 +19,8 @@ pub struct RenderSettings {
     pub depth: u16,
     /// Rays whose weight is below this in every component are not followed.
     pub min_weight: f32,
+    /// As [`scene::Settings::weightless_rays`].
+    pub weightless_rays: bool,
     /// How pixels are sampled.
     pub antialiasing: Antialiasing,
     /// What blocks light.
@@ -47,6 +49,7 @@ impl From<&scene::Settings> for RenderSettings {
             height: settings.height,
             depth: u16::try_from(settings.depth).unwrap_or(u16::MAX),
             min_weight: settings.min_weight,
+            weightless_rays: settings.weightless_rays,
             antialiasing: settings.antialiasing,
             shadows: settings.shadows,
             bands: settings.bands,

@@ -112,10 +112,14 @@ impl MediumStacks {
     /// A ray that travels in `stack` goes through the boundary of `inside`, into it or out of it.
     ///
     /// A ray that leaves a body which it is not known to be in, such as one that began inside an open surface, counts as having
-    /// been in it.
+    /// been in it. But where it does so `at_origin`, where it begins, rounding has put its beginning on the wrong side of the
+    /// boundary, which then has no effect; and so it is where it enters there a body that it is in already.
     #[inline]
-    pub fn cross(&mut self, stack: MediumStack, inside: Inside, leaving: bool) -> Crossing {
-        if leaving {
+    pub fn cross(&mut self, stack: MediumStack, inside: Inside, leaving: bool, at_origin: bool) -> Crossing {
+        if at_origin && leaving != self.contains(stack, inside.solid) {
+            let current = self.current(stack);
+            Crossing { before: current, beyond: current, after: stack }
+        } else if leaving {
             let within = if self.contains(stack, inside.solid) { stack } else { self.enter(stack, inside) };
             let after = self.leave(within, inside.solid);
             Crossing { before: self.current(within), beyond: self.current(after), after }
@@ -181,6 +185,22 @@ mod tests {
         let glass = stacks.enter(MediumStack::default(), inside(1, 0));
         assert_eq!(stacks.leave(glass, SolidId(9)), glass);
         assert_eq!(stacks.leave(MediumStack::default(), SolidId(9)), MediumStack::default());
+    }
+
+    #[test]
+    fn a_boundary_on_the_wrong_side_of_a_rays_beginning_has_no_effect() {
+        let mut stacks = MediumStacks::default();
+        let (body, outside) = (inside(1, 0), MediumStack::default());
+        let within = stacks.enter(outside, body);
+        // It is in the body, and seems to enter it; it is outside, and seems to leave it.
+        for (stack, leaving) in [(within, false), (outside, true)] {
+            let crossing = stacks.cross(stack, body, leaving, true);
+            assert!(crossing.is_without_effect() && crossing.after == stack);
+            assert!(!(leaving && stacks.cross(stack, body, leaving, false).is_without_effect()));
+        }
+        // What is really crossed there is crossed.
+        assert_eq!(stacks.cross(within, body, true, true).after, outside);
+        assert_eq!(stacks.cross(outside, body, false, true).beyond, Some(body));
     }
 
     #[test]

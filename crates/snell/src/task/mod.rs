@@ -30,8 +30,8 @@ pub struct RayTask {
     pub kind: RayKind,
     /// The wavelength band it carries, or all light.
     pub band: Option<Band>,
-    /// The number of its sample in its pixel's sequence: samples split white light at different places.
-    pub sequence: u32,
+    /// Samples of a pixel, and of neighbouring pixels, split white light at different places: the number of this one's.
+    pub split: u32,
 }
 
 /// What made a ray.

@@ -10,6 +10,8 @@
 //! samples share the tile. So a picture's bits do not depend on tiles or threads.
 
 mod shadow;
+#[cfg(test)]
+mod tests;
 
 use snell_math::{Point3, Ray, Rgb};
 
@@ -45,7 +47,7 @@ pub struct Tracer<'a, I> {
 }
 
 impl<I: Integrator> Tracer<'_, I> {
-    /// Traces camera rays, one a sample, each with the sample's number in its pixel's sequence, and all that follows from
+    /// Traces camera rays, one a sample, each with the number of its place to split white light, and all that follows from
     /// them; gives the samples' colours in the same order.
     ///
     /// `first_hits` is shown what each camera ray met, and may take it away: what lies beyond the far plane, say.
@@ -62,9 +64,9 @@ impl<I: Integrator> Tracer<'_, I> {
         let mut next_id = 0;
         current.clear();
         media.clear();
-        for (ray, sequence) in camera_rays {
+        for (ray, split) in camera_rays {
             let media = media_at(scene, ray.origin, current.last(), media, query);
-            let task = camera_task(ray, next_id, sequence, media);
+            let task = camera_task(ray, next_id, split, media);
             next_id += 1;
             observer.ray(&task);
             current.push(task);
@@ -131,7 +133,7 @@ fn media_at(
 }
 
 /// A ray from the camera, with all light.
-fn camera_task(ray: Ray, number: u32, sequence: u32, media: MediumStack) -> RayTask {
+fn camera_task(ray: Ray, number: u32, split: u32, media: MediumStack) -> RayTask {
     RayTask {
         ray,
         throughput: Rgb::WHITE,
@@ -143,6 +145,6 @@ fn camera_task(ray: Ray, number: u32, sequence: u32, media: MediumStack) -> RayT
         passes: 0,
         kind: RayKind::Camera,
         band: None,
-        sequence,
+        split,
     }
 }

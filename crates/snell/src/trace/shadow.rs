@@ -9,7 +9,7 @@ use snell_math::{Ray, Rgb};
 use snell_scene::scene::Shadows;
 
 use crate::compile::CompiledScene;
-use crate::geometry::{Hit, QueryScratch};
+use crate::geometry::{Geometry, Hit, QueryScratch};
 use crate::optics;
 use crate::statistics::Statistics;
 use crate::task::{Inside, MediumStacks, ShadowQuestion};
@@ -74,7 +74,8 @@ fn filter(
             return Rgb::BLACK;
         };
         let inside = Inside { solid: interaction.solid, material: interaction.material, priority: body.priority };
-        let crossing = media.cross(stack, inside, interaction.is_outward(ray.direction));
+        let leaving = interaction.is_outward(ray.direction);
+        let crossing = media.cross(stack, inside, leaving, Geometry::is_at_origin(ray, hit));
         stack = crossing.after;
         if crossing.is_without_effect() {
             continue;

@@ -109,6 +109,7 @@ impl Resolver<'_> {
             height: image.height,
             depth: render.depth,
             min_weight: render.min_weight,
+            weightless_rays: false,
             antialiasing: match render.antialiasing {
                 Either::A(model::AntialiasingMethod::None) => scene::Antialiasing::None,
                 Either::A(model::AntialiasingMethod::Adaptive) => scene::Antialiasing::Adaptive,

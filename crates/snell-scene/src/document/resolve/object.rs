@@ -1,11 +1,8 @@
 //! Objects: what they are, where they stand, of what they are made.
 
-use std::collections::BTreeMap;
-
 use snell_math::{Transform, Vector3};
 
 use super::Resolver;
-use super::order::order;
 use super::size::Size;
 use crate::diagnostic::Span;
 use crate::document::model::{self, Either, Located, Named, Step};
@@ -23,24 +20,7 @@ struct Surroundings {
 impl Resolver<'_> {
     /// All prototypes, each after those that it places.
     pub(super) fn named_prototypes(&mut self, named: &Named<model::Object>) {
-        let indices: BTreeMap<&str, usize> =
-            named.0.iter().enumerate().map(|(i, (name, _))| (&*name.value, i)).collect();
-        let needs: Vec<Vec<usize>> = named
-            .0
-            .iter()
-            .map(|(_, object)| {
-                let mut names = Vec::new();
-                references(&object.value, &mut names);
-                names.iter().filter_map(|name| indices.get(name).copied()).collect()
-            })
-            .collect();
-        let (order, cycles) = order(&needs);
-        for cycle in cycles {
-            let name = &named.0[cycle[0]].0;
-            let way: Vec<&str> = cycle.iter().chain(&cycle[..1]).map(|i| &*named.0[*i].0.value).collect();
-            let message = format!("the prototype {:?} contains itself: {}", name.value, way.join(" → "));
-            self.error(&name.span, message, "defined here");
-        }
+        let (_, order) = self.in_order(named, "prototype", "contains itself", references);
         let mut sizes = Vec::new();
         for i in order {
             let (name, object) = &named.0[i];

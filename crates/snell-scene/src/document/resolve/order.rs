@@ -1,9 +1,46 @@
 //! The order in which named things that refer to each other can be made: each after all that it refers to.
 
+use std::collections::BTreeMap;
+
+use super::Resolver;
+use crate::document::model::{Located, Named};
+
+impl Resolver<'_> {
+    /// For each of the named things, which others it needs by `references`, and an order in which each comes after all that
+    /// it needs. Those that need themselves are told ("the `kind` … `fault`: a → b → a") and left out of the order.
+    pub(super) fn in_order<T>(
+        &mut self,
+        named: &Named<T>,
+        kind: &str,
+        fault: &str,
+        references: impl for<'a> Fn(&'a T, &mut Vec<&'a str>),
+    ) -> (Vec<Vec<usize>>, Vec<usize>) {
+        let name = |i: usize| -> &Located<_> { &named.0[i].0 };
+        let indices: BTreeMap<&str, usize> = (0..named.0.len()).map(|i| (&*name(i).value, i)).collect();
+        let needs: Vec<Vec<usize>> = named
+            .0
+            .iter()
+            .map(|(_, thing)| {
+                let mut names = Vec::new();
+                references(&thing.value, &mut names);
+                names.iter().filter_map(|name| indices.get(name).copied()).collect()
+            })
+            .collect();
+        let (order, cycles) = order(&needs);
+        for cycle in cycles {
+            let first = name(cycle[0]);
+            let way: Vec<&str> = cycle.iter().chain(&cycle[..1]).map(|i| &*name(*i).value).collect();
+            let message = format!("the {kind} {:?} {fault}: {}", first.value, way.join(" → "));
+            self.error(&first.span, message, "defined here");
+        }
+        (needs, order)
+    }
+}
+
 /// An order in which every node comes after those it needs, and the cycles that stand in the way, each as the nodes along
 /// it. Nodes on cycles are left out of the order, those that need them are not. Works off a list instead of recursing, for
 /// chains of any length.
-pub(super) fn order(needs: &[Vec<usize>]) -> (Vec<usize>, Vec<Vec<usize>>) {
+fn order(needs: &[Vec<usize>]) -> (Vec<usize>, Vec<Vec<usize>>) {
     #[derive(Clone, Copy, PartialEq)]
     enum State {
         New,

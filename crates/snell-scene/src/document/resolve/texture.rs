@@ -1,11 +1,8 @@
 //! Textures and paints.
 
-use std::collections::BTreeMap;
-
 use snell_math::{Rgb, Transform, Vector3};
 
 use super::Resolver;
-use super::order::order;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::document::model::{self, Either, Located, Named, NoiseForm, Paint, TextureSpace};
 use crate::scene::texture::NoiseKind;
@@ -18,24 +15,7 @@ const MAX_DEPTH: usize = 32;
 impl Resolver<'_> {
     /// All textures that have names, each after those it refers to.
     pub(super) fn named_textures(&mut self, named: &Named<model::Texture>) {
-        let indices: BTreeMap<&str, usize> =
-            named.0.iter().enumerate().map(|(i, (name, _))| (&*name.value, i)).collect();
-        let needs: Vec<Vec<usize>> = named
-            .0
-            .iter()
-            .map(|(_, texture)| {
-                let mut names = Vec::new();
-                references(&texture.value, &mut names);
-                names.iter().filter_map(|name| indices.get(name).copied()).collect()
-            })
-            .collect();
-        let (order, cycles) = order(&needs);
-        for cycle in cycles {
-            let name = &named.0[cycle[0]].0;
-            let way: Vec<&str> = cycle.iter().chain(&cycle[..1]).map(|i| &*named.0[*i].0.value).collect();
-            let message = format!("the texture {:?} is made of itself: {}", name.value, way.join(" → "));
-            self.error(&name.span, message, "defined here");
-        }
+        let (needs, order) = self.in_order(named, "texture", "is made of itself", references);
         let mut depths = vec![0; named.0.len()];
         for i in order {
             let (name, texture) = &named.0[i];

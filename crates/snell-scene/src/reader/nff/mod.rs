@@ -11,7 +11,8 @@
 //!   are open.
 //! - Lights do not fall off. Without a colour, each of n has the intensity √n / 2n that the Readme suggests; ambient light
 //!   has that in any case.
-//! - `angle` is the vertical field of view; `hither` is checked and not used, as a ray needs no near plane.
+//! - `angle` reaches from the middle of the top row of pixels to that of the bottom row, as NFF.TXT defines it, so the field of
+//!   view is a row wider; the rows are those of `resolution`. `hither` is checked and not used, as a ray needs no near plane.
 //! - A negative radius shows a surface's inside, which is rendered as a surface with two sides.
 
 mod builder;
@@ -50,7 +51,7 @@ pub fn read(name: &str, bytes: &[u8]) -> (Option<Scene>, Diagnostics) {
 }
 
 /// Settings by the rules of the SPD: a ray at every corner of 512 × 512 pixels, hence 513 × 513 rays and no further ones;
-/// depth 5, no ray cut for its small weight; the teapot, the only one with patches, has two sides.
+/// depth 5, no ray cut for its small weight, not even for none; the teapot, the only one with patches, has two sides.
 pub fn spd_rules(scene: &mut Scene) {
     scene.settings.width = 513;
     scene.settings.height = 513;
@@ -58,6 +59,7 @@ pub fn spd_rules(scene: &mut Scene) {
     scene.settings.antialiasing = Antialiasing::None;
     scene.settings.depth = 5;
     scene.settings.min_weight = 0.0;
+    scene.settings.weightless_rays = true;
 
     let mut patches = vec![false; scene.materials.len()];
     for object in &scene.objects {

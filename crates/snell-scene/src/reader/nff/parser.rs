@@ -203,7 +203,13 @@ impl<'a> Parser<'_, 'a> {
         if let Some([width, height]) = resolution {
             self.builder.resolution = Some([width as u32, height as u32]);
         }
-        self.builder.camera = Camera { eye: from, gaze, up, frame: Frame::VerticalFov(portable::radians(angle)) };
+        // From middle to middle of the outermost rows there is a row less than in the whole picture.
+        let row_more = match resolution {
+            Some([_, rows]) if rows >= 2.0 => rows.trunc() / (rows.trunc() - 1.0),
+            _ => 1.0,
+        };
+        let half = portable::atan(portable::tan(0.5 * portable::radians(angle)) * row_more);
+        self.builder.camera = Camera { eye: from, gaze, up, frame: Frame::VerticalFov(2.0 * half) };
         Some(())
     }
 

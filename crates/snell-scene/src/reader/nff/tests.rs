@@ -49,7 +49,10 @@ fn every_entity_becomes_what_it_says() {
     ));
     assert_eq!(scene.background, Background::Color(Rgb::from_srgb([0.1, 0.2, 0.3])));
     assert_eq!((scene.settings.width, scene.settings.height), (512, 256));
-    assert_eq!(scene.camera.frame, Frame::VerticalFov(std::f64::consts::FRAC_PI_4));
+    let Frame::VerticalFov(fov) = scene.camera.frame else { panic!("{:?}", scene.camera.frame) };
+    // 255 of the 256 rows are within 45 degrees.
+    let [whole, inner] = [0.5 * fov, std::f64::consts::FRAC_PI_8].map(snell_math::portable::tan);
+    assert!((whole / inner - 256.0 / 255.0).abs() < 1e-12);
     // Two lights: √2 / 4 each, unless they say otherwise.
     let suggested = Rgb::gray((2f64.sqrt() / 4.0) as f32);
     assert_eq!((scene.ambient, scene.lights[0].intensity), (suggested, suggested));

@@ -1,0 +1,125 @@
+//! Which rays are followed, and what becomes of those that are not.
+
+use snell_math::{Point3, Ray, Rgb, Vector3};
+use snell_scene::scene::Shadows;
+
+use super::{Rules, Sink, Spawn};
+use crate::observe::RayTree;
+use crate::statistics::Statistics;
+use crate::task::{Cut, MediumStack, MediumStacks, RayKind, RayTask, Term};
+
+const RULES: Rules = Rules { depth: 3, min_weight: 0.01, weightless_rays: false, shadows: Shadows::Filtered };
+
+fn task(depth: u16, throughput: f32) -> RayTask {
+    RayTask {
+        ray: Ray::new(Point3::ORIGIN, Vector3::X),
+        throughput: Rgb::gray(throughput),
+        sample: 0,
+        id: 0,
+        parent: 0,
+        media: MediumStack::default(),
+        depth,
+        passes: 0,
+        kind: RayKind::Camera,
+        band: None,
+        split: 0,
+    }
+}
+
+/// What came of one call: the rays for the next generation, the watcher's notes, the counts and the sample.
+fn with(
+    rules: Rules,
+    parent: &RayTask,
+    call: impl FnOnce(&mut Sink<'_, RayTree>),
+) -> (Vec<RayTask>, RayTree, Statistics, Rgb) {
+    let (mut sums, mut questions, mut next) = ([Rgb::BLACK], Vec::new(), Vec::new());
+    let (mut media, mut statistics, mut next_id) = (MediumStacks::default(), Statistics::default(), 1);
+    let mut tree = RayTree::default();
+    crate::observe::Observer::ray(&mut tree, parent);
+    statistics.camera_rays = 1;
+    call(&mut Sink {
+        sums: &mut sums,
+        questions: &mut questions,
+        next: &mut next,
+        media: &mut media,
+        statistics: &mut statistics,
+        observer: &mut tree,
+        rules,
+        next_id: &mut next_id,
+    });
+    (next, tree, statistics, sums[0])
+}
+
+fn spawn(weight: f32) -> Spawn {
+    Spawn { kind: RayKind::Reflected, weight: Rgb::gray(weight), media: MediumStack::default(), band: None }
+}
+
+fn upward() -> Ray {
+    Ray::new(Point3::ORIGIN, Vector3::Y)
+}
+
+#[test]
+fn rays_are_spawned_one_deeper_with_their_share() {
+    let parent = task(2, 0.5);
+    let (next, tree, statistics, _) = with(RULES, &parent, |sink| sink.spawn(&parent, spawn(0.25), upward));
+    assert_eq!((next.len(), next[0].depth, next[0].throughput), (1, 3, Rgb::gray(0.125)));
+    assert_eq!((next[0].id, next[0].parent, tree.rays.len()), (1, 0, 2));
+    assert_eq!((statistics.reflected_rays, statistics.max_depth, statistics.cut_weight()), (1, 3, 0.0));
+}
+
+#[test]
+fn rays_too_deep_or_too_light_are_cut_and_their_weight_is_known() {
+    for (depth, weight, why) in [(3, 0.5, Cut::Depth), (1, 0.009, Cut::Weight), (3, 0.009, Cut::Depth)] {
+        let parent = task(depth, 1.0);
+        let (next, tree, statistics, _) = with(RULES, &parent, |sink| sink.spawn(&parent, spawn(weight), upward));
+        assert!(next.is_empty() && statistics.reflected_rays == 0);
+        assert_eq!(tree.rays[0].cuts, [(why, Rgb::gray(weight))]);
+        assert!((statistics.cut_weight() - f64::from(weight)).abs() < 1e-9);
+    }
+    let all = Rules { min_weight: 0.0, ..RULES };
+    let (next, ..) = with(all, &task(1, 1.0), |sink| sink.spawn(&task(1, 1.0), spawn(1e-30), upward));
+    assert_eq!(next.len(), 1, "none is too light");
+}
+
+#[test]
+fn rays_of_no_weight_are_spawned_by_rule_only() {
+    let parent = task(1, 1.0);
+    for (rule, count) in [(false, 0), (true, 1)] {
+        let rules = Rules { weightless_rays: rule, min_weight: 0.0, ..RULES };
+        let (next, tree, statistics, _) = with(rules, &parent, |sink| sink.spawn(&parent, spawn(0.0), upward));
+        assert_eq!((next.len(), statistics.reflected_rays), (count, count as u64));
+        assert!(tree.rays[0].cuts.is_empty());
+    }
+}
+
+#[test]
+fn a_ray_that_passes_stays_what_it_was_but_not_for_ever() {
+    let mut ray = RayTask { kind: RayKind::Refracted, ..task(3, 0.001) };
+    let beyond = Ray::new(Point3::new(1.0, 0.0, 0.0), Vector3::X);
+    let mut passes = 0;
+    loop {
+        let (next, tree, statistics, _) = with(RULES, &ray, |sink| sink.pass(&ray, beyond, MediumStack::default()));
+        assert_eq!((statistics.refracted_rays, statistics.reflected_rays), (0, 0), "it is no new ray");
+        let Some(&again) = next.first() else {
+            assert_eq!(tree.rays[0].cuts, [(Cut::Depth, ray.throughput)]);
+            break;
+        };
+        assert_eq!((again.depth, again.throughput, again.kind), (ray.depth, ray.throughput, ray.kind));
+        passes += 1;
+        ray = RayTask { id: 0, parent: 0, ..again };
+    }
+    assert!((1000..100_000).contains(&passes), "{passes}");
+}
+
+#[test]
+fn terms_carry_the_throughput_to_the_sample() {
+    let parent = task(1, 0.5);
+    let (_, tree, _, sum) = with(RULES, &parent, |sink| {
+        sink.add(&parent, Term::Emission, Rgb::gray(0.5));
+        sink.add(&parent, Term::Ambient, Rgb::new(1.0, 0.0, 0.0));
+    });
+    assert_eq!(sum, Rgb::new(0.75, 0.25, 0.25));
+    assert_eq!((tree.sum(), tree.shares.len()), (sum, 2));
+    assert_eq!(tree.shares_of(0).count(), 2);
+    assert_eq!(tree.shares_of(1).count(), 0);
+}
