@@ -152,6 +152,17 @@ impl Vector3 {
     /// ```
     #[inline]
     pub fn try_normalize(self) -> Option<Self> {
+        let length_squared = self.length_squared();
+        if (1e-190..1e190).contains(&length_squared) {
+            Some(self * (1.0 / length_squared.sqrt()))
+        } else {
+            self.try_normalize_extreme()
+        }
+    }
+
+    /// As [`Vector3::try_normalize`], for vectors of any length.
+    #[cold]
+    fn try_normalize_extreme(self) -> Option<Self> {
         // Scaled first by a power of two, so that neither tiny nor huge vectors under- or overflow when squared.
         let largest = self.max_abs();
         if !(largest > 0.0 && largest.is_finite()) {

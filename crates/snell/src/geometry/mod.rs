@@ -13,13 +13,13 @@ mod tests;
 use snell_math::{Point3, Ray, Vector3};
 
 pub(crate) use placed::Placement;
-pub(crate) use space::{Attributes, NONE, ObjectSpace, Primitive, Space};
+pub(crate) use space::{Attributes, NONE, ObjectPlace, ObjectSpace, Primitive, Space};
 
 use crate::accel::Candidate;
 use crate::csg::{CsgHit, CsgScratch, CsgSolid};
 use crate::interaction::{SolidId, SurfaceInteraction};
-use crate::shape::ShapeHit;
 use crate::shape::triangle_mesh::{MeshHit, TriangleMesh};
+use crate::shape::{ShapeHit, SurfacePoint};
 use crate::task::RayTask;
 use crate::texture::Spaces;
 
@@ -261,7 +261,17 @@ impl Geometry {
         let placement = &self.world.placements[*placement as usize];
         let space = &self.prototypes[*prototype as usize];
         let mut interaction = self.interaction_in(space, &placement.to_local(ray), hit, hit.inner, *material);
-        placement.carry_out(&mut interaction);
+        let carried = placement.carry_out(&SurfacePoint {
+            point: interaction.point,
+            error: interaction.error,
+            geometric_normal: interaction.geometric_normal,
+            shading_normal: interaction.shading_normal,
+            uv: interaction.uv,
+        });
+        interaction.point = carried.point;
+        interaction.error = carried.error;
+        interaction.geometric_normal = carried.geometric_normal;
+        interaction.shading_normal = carried.shading_normal;
         interaction
     }
 
@@ -306,33 +316,50 @@ impl Geometry {
             Primitive::Instance { .. } => unreachable!("an instance is no surface"),
         };
         let material = self.material_of(primitive, attributes, inherited_material, hit.place);
-        let mut interaction = SurfaceInteraction {
+        let Spaces { object, uv, .. } = self.spaces[material as usize];
+        let place = if object || uv {
+            space.locate_on_object(primitive, attributes, uv.then_some(hit.place.part), &surface)
+        } else {
+            ObjectPlace { point: surface.point, inside: Vector3::ZERO, uv: surface.uv }
+        };
+        let surface = match placement {
+            None => surface,
+            Some(placement) => placement.carry_out(&surface),
+        };
+        SurfaceInteraction {
             t: hit.t,
             point: surface.point,
             error: surface.error,
             geometric_normal: surface.geometric_normal,
             shading_normal: surface.shading_normal,
-            uv: surface.uv,
-            object_point: surface.point,
-            object_inside: Vector3::ZERO,
+            uv: place.uv,
+            object_point: place.point,
+            object_inside: place.inside,
             vertex_color,
             material,
             object: attributes.object,
             solid: SolidId(u64::from(hit.primitive) << 32 | u64::from(hit.inner)),
-        };
-        let Spaces { object, uv, .. } = self.spaces[material as usize];
-        if object || uv {
-            space.locate_on_object(primitive, attributes, uv.then_some(hit.place.part), &mut interaction);
         }
-        if let Some(placement) = placement {
-            placement.carry_out(&mut interaction);
-        }
-        interaction
     }
 
     /// Which material a hit has: its part's own, the object's, the mesh file's, that of the instance, or the one for all others.
     #[inline]
     fn material_of(&self, primitive: &Primitive, attributes: &Attributes, inherited: u32, place: LocalPlace) -> u32 {
+        if let Primitive::Sphere(_) | Primitive::Plane(_) = primitive
+            && attributes.material != NONE
+        {
+            return attributes.material;
+        }
+        self.material_of_others(primitive, attributes, inherited, place)
+    }
+
+    fn material_of_others(
+        &self,
+        primitive: &Primitive,
+        attributes: &Attributes,
+        inherited: u32,
+        place: LocalPlace,
+    ) -> u32 {
         if let Primitive::Solid { solid, .. } = primitive {
             let of_part = self.solids[*solid as usize].tag(place.leaf);
             if of_part != NONE {

@@ -2,7 +2,6 @@
 
 use snell_math::{Normal3, Point3, Ray, Transform};
 
-use crate::interaction::SurfaceInteraction;
 use crate::shape::SurfacePoint;
 
 /// A transform from a local space to the one around it.
@@ -44,20 +43,9 @@ impl Placement {
         self.outer_from_local.inverse().normal(normal).normalize()
     }
 
-    /// Carries an interaction from the local space to the one around; where on its object it is, stays.
+    /// A point of a surface in the space around.
     #[inline]
-    pub fn carry_out(&self, interaction: &mut SurfaceInteraction) {
-        let local = SurfacePoint {
-            point: interaction.point,
-            error: interaction.error,
-            geometric_normal: interaction.geometric_normal,
-            shading_normal: interaction.shading_normal,
-            uv: interaction.uv,
-        };
-        let carried = local.carried(&self.outer_from_local);
-        interaction.point = carried.point;
-        interaction.error = carried.error;
-        interaction.geometric_normal = carried.geometric_normal;
-        interaction.shading_normal = carried.shading_normal;
+    pub fn carry_out(&self, surface: &SurfacePoint) -> SurfacePoint {
+        surface.carried(&self.outer_from_local)
     }
 }

@@ -5,8 +5,7 @@ use snell_math::{Bounds3, Normal3, Point3, Ray, Vector3};
 use super::placed::Placement;
 use super::{InnerHit, Touching};
 use crate::accel::{BuildError, Bvh, Candidate};
-use crate::interaction::SurfaceInteraction;
-use crate::shape::{Plane, Shape, ShapeHit, Sphere, SpherePairs};
+use crate::shape::{Plane, Shape, ShapeHit, Sphere, SpherePairs, SurfacePoint};
 use crate::texture::RELATIVE_INSET;
 
 /// No such place: no placement, no material, no inner primitive.
@@ -52,6 +51,15 @@ pub struct ObjectSpace {
     pub shape: Shape,
 }
 
+/// A point of a surface as its object sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct ObjectPlace {
+    pub point: Point3,
+    /// A short way into the solid.
+    pub inside: Vector3,
+    pub uv: [f64; 2],
+}
+
 /// A short way into the solid, surely longer than the point is wrong: where patterns are read.
 fn inside(point: Point3, outward: Normal3, error: f64) -> Vector3 {
     outward.as_vector() * -(8.0 * error + RELATIVE_INSET * point.max_abs())
@@ -63,18 +71,18 @@ fn inside(point: Point3, outward: Normal3, error: f64) -> Vector3 {
 #[inline(always)]
 fn meet(
     primitive: &Primitive,
-    is_opaque: bool,
+    is_opaque: impl FnOnce() -> bool,
     ray: &Ray,
     touching: Touching,
     limit: f64,
     test: &mut impl FnMut(&Primitive, bool, f64) -> Option<InnerHit>,
 ) -> Option<InnerHit> {
-    let candidate = |hit: ShapeHit| touching.candidate(hit.into(), is_opaque);
-    match primitive {
-        Primitive::Sphere(sphere) => sphere.intersect(ray, 0.0, f64::INFINITY).map(candidate),
-        Primitive::Plane(plane) => plane.intersect(ray, 0.0, f64::INFINITY).map(candidate),
-        primitive => test(primitive, is_opaque, limit),
-    }
+    let hit = match primitive {
+        Primitive::Sphere(sphere) => sphere.intersect(ray, 0.0, f64::INFINITY),
+        Primitive::Plane(plane) => plane.intersect(ray, 0.0, f64::INFINITY),
+        primitive => return test(primitive, is_opaque(), limit),
+    };
+    hit.map(|hit| touching.candidate(hit.into(), is_opaque()))
 }
 
 /// Primitives with their hierarchy: bounded ones first, then those without bounds, such as planes.
@@ -143,32 +151,33 @@ impl Space {
         }
     }
 
-    /// Fills in where on its object an interaction is, and (u, v) where the part of the primitive is given. The interaction is in
-    /// this space for shapes that were brought here, and else in the primitive's own, which is the object's.
+    /// Where on its object a point of a primitive's surface is, with (u, v) where the part of the primitive is given. The surface
+    /// is in this space for shapes that were brought here, and else in the primitive's own, which is the object's.
+    #[inline(never)]
     pub fn locate_on_object(
         &self,
         primitive: &Primitive,
         attributes: &Attributes,
         part: Option<u32>,
-        interaction: &mut SurfaceInteraction,
-    ) {
-        let SurfaceInteraction { point, geometric_normal: normal, error, .. } = *interaction;
-        let shape = match self.object_spaces.get(attributes.object_space as usize) {
+        surface: &SurfacePoint,
+    ) -> ObjectPlace {
+        let SurfacePoint { point, geometric_normal: normal, error, uv, .. } = *surface;
+        let (mut place, shape) = match self.object_spaces.get(attributes.object_space as usize) {
             Some(ObjectSpace { placement, shape }) => {
-                interaction.object_point = placement.point_to_local(point);
+                let point = placement.point_to_local(point);
                 let normal = placement.normal_to_local(normal);
-                let error = placement.error_to_local(error);
-                interaction.object_inside = inside(interaction.object_point, normal, error);
-                part.map(|part| (*shape, part))
+                let inside = inside(point, normal, placement.error_to_local(error));
+                (ObjectPlace { point, inside, uv }, part.map(|part| (*shape, part)))
             }
             None => {
-                interaction.object_inside = inside(point, normal, error);
-                part.and_then(|part| Some((self.shape(primitive)?, part)))
+                let inside = inside(point, normal, error);
+                (ObjectPlace { point, inside, uv }, part.and_then(|part| Some((self.shape(primitive)?, part))))
             }
         };
         if let Some((shape, part)) = shape {
-            interaction.uv = shape.uv(interaction.object_point, part);
+            place.uv = shape.uv(place.point, part);
         }
+        place
     }
 
     /// The box of a primitive; all of space for one without bounds.
@@ -199,7 +208,7 @@ impl Space {
         let mut limit = t_max;
         // The unbounded ones before the rest, since a floor shortens the way through it.
         for (primitive, index) in self.primitives[self.first_alone..].iter().zip(self.first_alone as u32..) {
-            let is_opaque = self.attributes[index as usize].is_opaque;
+            let is_opaque = || self.attributes[index as usize].is_opaque;
             if let Some(hit) = meet(primitive, is_opaque, ray, touching, limit, &mut test)
                 && (hit.t() < limit || hit.t() == limit && nearest.is_none())
             {
@@ -227,7 +236,7 @@ impl Space {
             return nearest;
         }
         let bounded = self.bvh.closest(ray, limit, |index, limit| {
-            let is_opaque = self.attributes[index as usize].is_opaque;
+            let is_opaque = || self.attributes[index as usize].is_opaque;
             meet(&self.primitives[index as usize], is_opaque, ray, touching, limit, &mut test)
         });
         bounded.or(nearest)

@@ -13,6 +13,7 @@ use crate::camera::{Camera, Projection, Window};
 use crate::compile::CompiledScene;
 use crate::geometry::{Geometry, Hit};
 use crate::interaction::SurfaceInteraction;
+use crate::light::Light;
 use crate::material::{Bsdf, Interface};
 use crate::observe::Observer;
 use crate::optics::{beer_lambert, fresnel_dielectric, reflect, refract};
@@ -55,16 +56,23 @@ impl Whitted {
 impl Integrator for Whitted {
     fn shade<O: Observer>(&self, scene: &CompiledScene, task: &RayTask, hit: Option<&Hit>, out: &mut Sink<'_, O>) {
         // What the body that the ray travels in does to it on the way.
-        let weakened;
-        let task = match medium_around(scene, task, out) {
-            None => task,
+        match medium_around(scene, task, out) {
+            None => self.shade_end(scene, task, hit, out),
             Some(medium) => {
                 let distance = hit.map_or(f64::INFINITY, |hit| hit.t);
-                weakened = travel(scene, task, medium, distance, out);
-                &weakened
+                let weakened = travel(scene, task, medium, distance, out);
+                self.shade_end(scene, &weakened, hit, out);
             }
-        };
+        }
+    }
+}
 
+// Code that runs for nearly every ray stands in functions of its own here and there, that are not inlined: what the compiler
+// makes of one large function keeps less in registers than it moves to and fro.
+impl Whitted {
+    /// What is at the end of a ray, whose throughput is what is left there.
+    #[inline(never)]
+    fn shade_end<O: Observer>(&self, scene: &CompiledScene, task: &RayTask, hit: Option<&Hit>, out: &mut Sink<'_, O>) {
         let Some(hit) = hit else {
             out.met(task, None);
             out.add(task, Term::Background, self.background(scene, task));
@@ -104,9 +112,7 @@ impl Integrator for Whitted {
             self.spawn_at_interface(scene, task, &interaction, wo, interface, crossing, out);
         }
     }
-}
 
-impl Whitted {
     /// Reflection and refraction at the boundary of a transparent body.
     #[expect(clippy::too_many_arguments, reason = "the parts of one hit; a struct of them would have this one user")]
     fn spawn_at_interface<O: Observer>(
@@ -242,34 +248,47 @@ fn add_local_terms<O: Observer>(
     }
     // The side that is lit: the viewer's, or the outward one of surfaces that have but one.
     let side = if bsdf.one_sided || interaction.is_outward(wo) { 1.0 } else { -1.0 };
-    let geometric = interaction.geometric_normal.as_vector() * side;
-    let normal = interaction.shading_normal.as_vector() * side;
-    for (number, light) in scene.lights.iter().enumerate() {
-        let Some(arriving) = light.illuminate(interaction.point) else { continue };
-        let wi = arriving.to_light;
-        // No question where the surface itself is in the way.
-        if normal.dot(wi) <= 0.0 || geometric.dot(wi) <= 0.0 {
-            continue;
-        }
-        let local = bsdf.reflect_light(normal, wo, wi);
-        let weight = task.throughput * arriving.irradiance;
-        let (diffuse, specular) = (weight * local.diffuse, weight * local.specular);
-        if out.needs_no_answer(diffuse, specular) {
-            continue;
-        }
-        let ray = interaction.spawn_ray(wi);
-        // From where the ray really starts: the light may be as near as the offset.
-        let distance = arriving.distance - (ray.origin - interaction.point).dot(wi);
-        out.ask(ShadowQuestion {
-            ray,
-            distance,
-            terms: [(Term::Diffuse(number as u32), diffuse), (Term::Specular(number as u32), specular)],
-            sample: task.sample,
-            task: task.id,
-            media: task.media,
-            extinction_scale: 1.0,
-        });
+    for (light, number) in scene.lights.iter().zip(0..) {
+        ask_light(light, number, task, interaction, bsdf, side, out);
     }
+}
+
+/// The question to one light, with the terms that it would add; `side` is 1 where the outward side is lit, −1 where the other is.
+#[inline(never)]
+fn ask_light<O: Observer>(
+    light: &Light,
+    number: u32,
+    task: &RayTask,
+    interaction: &SurfaceInteraction,
+    bsdf: &Bsdf,
+    side: f64,
+    out: &mut Sink<'_, O>,
+) {
+    let Some(arriving) = light.illuminate(interaction.point) else { return };
+    let wi = arriving.to_light;
+    let normal = interaction.shading_normal.as_vector() * side;
+    // No question where the surface itself is in the way.
+    if normal.dot(wi) <= 0.0 || interaction.geometric_normal.dot(wi) * side <= 0.0 {
+        return;
+    }
+    let local = bsdf.reflect_light(normal, -task.ray.direction, wi);
+    let weight = task.throughput * arriving.irradiance;
+    let (diffuse, specular) = (weight * local.diffuse, weight * local.specular);
+    if out.needs_no_answer(diffuse, specular) {
+        return;
+    }
+    let ray = interaction.spawn_ray(wi);
+    // From where the ray really starts: the light may be as near as the offset.
+    let distance = arriving.distance - (ray.origin - interaction.point).dot(wi);
+    out.ask(ShadowQuestion {
+        ray,
+        distance,
+        terms: [(Term::Diffuse(number), diffuse), (Term::Specular(number), specular)],
+        sample: task.sample,
+        task: task.id,
+        media: task.media,
+        extinction_scale: 1.0,
+    });
 }
 
 /// The mirrored ray, on the side it came from.
