@@ -5,7 +5,7 @@ use snell_math::{Bounds3, Normal3, Point3, Ray, Vector3};
 use super::placed::Placement;
 use super::{InnerHit, Touching};
 use crate::accel::{BuildError, Bvh, Candidate};
-use crate::shape::{Plane, Shape, ShapeHit, Sphere, SpherePairs, SurfacePoint};
+use crate::shape::{Plane, Shape, Sphere, SpherePairs, SurfacePoint};
 use crate::texture::RELATIVE_INSET;
 
 /// No such place: no placement, no material, no inner primitive.

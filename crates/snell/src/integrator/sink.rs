@@ -25,12 +25,18 @@ pub struct Rules {
 /// infinitely thin, not a limit that a real one meets.
 const MAX_PASSES: u16 = 4096;
 
+/// The most rays of one generation that belong to one sample. Shares that add up to more than one double them with every
+/// generation; no scene that keeps light together comes near it.
+const MAX_SPAWNED: u32 = 2048;
+
 /// What `shade` gives its results to: terms to the sample, questions to the lights, rays to the next generation.
 #[derive(Debug)]
 pub struct Sink<'a, O> {
     pub(crate) sums: &'a mut [Rgb],
     pub(crate) questions: &'a mut Vec<ShadowQuestion>,
     pub(crate) next: &'a mut Vec<RayTask>,
+    /// How many of those belong to each sample.
+    pub(crate) spawned: &'a mut [u32],
     /// The stacks of transparent bodies that tasks refer to.
     pub media: &'a mut MediumStacks,
     /// What is counted.
@@ -103,6 +109,8 @@ impl<O: Observer> Sink<'_, O> {
         }
         let cut = if parent.depth >= self.rules.depth {
             Some(Cut::Depth)
+        } else if self.spawned[parent.sample as usize] >= MAX_SPAWNED {
+            Some(Cut::Number)
         } else if throughput.max_abs() < self.rules.min_weight {
             Some(Cut::Weight)
         } else {
@@ -138,6 +146,7 @@ impl<O: Observer> Sink<'_, O> {
         task.id = *self.next_id;
         task.parent = parent;
         *self.next_id = self.next_id.wrapping_add(1);
+        self.spawned[task.sample as usize] += 1;
         self.observer.ray(&task);
         self.next.push(task);
     }

@@ -34,13 +34,14 @@ fn with(
 ) -> (Vec<RayTask>, RayTree, Statistics, Rgb) {
     let (mut sums, mut questions, mut next) = ([Rgb::BLACK], Vec::new(), Vec::new());
     let (mut media, mut statistics, mut next_id) = (MediumStacks::default(), Statistics::default(), 1);
-    let mut tree = RayTree::default();
+    let (mut tree, mut spawned) = (RayTree::default(), [0]);
     crate::observe::Observer::ray(&mut tree, parent);
     statistics.camera_rays = 1;
     call(&mut Sink {
         sums: &mut sums,
         questions: &mut questions,
         next: &mut next,
+        spawned: &mut spawned,
         media: &mut media,
         statistics: &mut statistics,
         observer: &mut tree,
@@ -122,4 +123,16 @@ fn terms_carry_the_throughput_to_the_sample() {
     assert_eq!((tree.sum(), tree.shares.len()), (sum, 2));
     assert_eq!(tree.shares_of(0).count(), 2);
     assert_eq!(tree.shares_of(1).count(), 0);
+}
+
+#[test]
+fn rays_of_one_sample_do_not_multiply_without_end() {
+    let parent = task(1, 1.0);
+    let (next, _, statistics, _) = with(RULES, &parent, |sink| {
+        for _ in 0..5000 {
+            sink.spawn(&parent, spawn(1.0), upward);
+        }
+    });
+    assert_eq!((next.len(), statistics.reflected_rays), (2048, 2048));
+    assert_eq!(statistics.cut_weight(), 2952.0, "and what is cut is counted");
 }

@@ -92,4 +92,6 @@ pub enum Cut {
     Depth,
     /// It would have weighed less than allowed.
     Weight,
+    /// Its sample had too many rays already.
+    Number,
 }

@@ -30,6 +30,7 @@ pub struct Scratch {
     hits: Vec<Option<Hit>>,
     questions: Vec<ShadowQuestion>,
     sums: Vec<Rgb>,
+    spawned: Vec<u32>,
     media: MediumStacks,
     shadow: shadow::ShadowScratch,
     query: QueryScratch,
@@ -60,7 +61,7 @@ impl<I: Integrator> Tracer<'_, I> {
         mut first_hits: impl FnMut(usize, &Ray, &mut Option<Hit>),
     ) -> &'s [Rgb] {
         let scene = self.scene;
-        let Scratch { current, next, hits, questions, sums, media, shadow, query } = scratch;
+        let Scratch { current, next, hits, questions, sums, spawned, media, shadow, query } = scratch;
         let mut next_id = 0;
         current.clear();
         media.clear();
@@ -89,8 +90,11 @@ impl<I: Integrator> Tracer<'_, I> {
             // Shade: local terms, questions to lights, rays of the next generation.
             next.clear();
             questions.clear();
+            spawned.clear();
+            spawned.resize(sums.len(), 0);
             let rules = self.rules;
-            let mut sink = Sink { sums, questions, next, media, statistics, observer, rules, next_id: &mut next_id };
+            let mut sink =
+                Sink { sums, questions, next, spawned, media, statistics, observer, rules, next_id: &mut next_id };
             for (task, hit) in current.iter().zip(hits.iter()) {
                 self.integrator.shade(scene, task, hit.as_ref(), &mut sink);
             }
