@@ -7,6 +7,7 @@
 
 mod measure;
 mod report;
+mod sphereflake;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -25,20 +26,39 @@ const HEIGHT: &str = "768";
 /// Threads of either renderer.
 const THREADS: &str = "2";
 
-/// One picture that both renderers make: `benches/povray/POV` and `benches/NAME.toml`.
+/// One picture that both renderers make: `benches/povray/POV` and its twin.
 struct Case {
     name: &'static str,
     pov: &'static str,
     /// Further words for POV-Ray.
     declare: &'static [&'static str],
+    twin: Twin,
+}
+
+/// A picture's scene in Snell's format.
+enum Twin {
+    /// `benches/NAME.toml`.
+    File,
+    /// Written when it is needed, being long.
+    Sphereflake { depth: u32 },
 }
 
 const CASES: &[Case] = &[
-    Case { name: "nine-red-balls", pov: "nine-red-balls.pov", declare: &[] },
-    Case { name: "one-glass-sphere", pov: "one-glass-sphere.pov", declare: &[] },
-    Case { name: "five-glass-balls", pov: "five-glass-balls.pov", declare: &[] },
-    Case { name: "sphereflake-7381", pov: "sphereflake.pov", declare: &["Declare=DEPTH=4"] },
-    Case { name: "sphereflake-66430", pov: "sphereflake.pov", declare: &["Declare=DEPTH=5"] },
+    Case { name: "nine-red-balls", pov: "nine-red-balls.pov", declare: &[], twin: Twin::File },
+    Case { name: "one-glass-sphere", pov: "one-glass-sphere.pov", declare: &[], twin: Twin::File },
+    Case { name: "five-glass-balls", pov: "five-glass-balls.pov", declare: &[], twin: Twin::File },
+    Case {
+        name: "sphereflake-7381",
+        pov: "sphereflake.pov",
+        declare: &["Declare=DEPTH=4"],
+        twin: Twin::Sphereflake { depth: 4 },
+    },
+    Case {
+        name: "sphereflake-66430",
+        pov: "sphereflake.pov",
+        declare: &["Declare=DEPTH=5"],
+        twin: Twin::Sphereflake { depth: 5 },
+    },
 ];
 
 /// Runs the command line `cargo xtask bench ...`.
@@ -59,11 +79,8 @@ pub fn run(mut arguments: Arguments) -> Outcome {
 
     let mut rows = Vec::new();
     for case in CASES.iter().filter(|case| wanted.is_empty() || wanted.iter().any(|name| name == case.name)) {
-        let twin = process::root().join("benches").join(format!("{}.toml", case.name));
-        if !twin.is_file() {
-            println!("{}: there is no benches/{}.toml yet, so only POV-Ray is measured", case.name, case.name);
-        }
-        let ours = twin.is_file().then(|| snell_command(&snell, &twin, &scratch.join(format!("{}.png", case.name))));
+        let twin = case.twin(&scratch)?;
+        let ours = Some(snell_command(&snell, &twin, &scratch.join(format!("{}.png", case.name))));
         let theirs = povray.is_some().then(|| povray_command(case, &scratch.join(format!("{}-povray.png", case.name))));
         println!("{} ...", case.name);
         let [ours, theirs] = alternate([ours, theirs], runs)?;
@@ -78,6 +95,21 @@ pub fn run(mut arguments: Arguments) -> Outcome {
     std::fs::write(&file, &report).map_err(|error| format!("cannot write {}: {error}", file.display()))?;
     println!("\n{report}\nalso in {}", file.display());
     Ok(())
+}
+
+impl Case {
+    /// Where the scene in Snell's format is; written into `scratch` where it is not among the sources.
+    fn twin(&self, scratch: &Path) -> Result<PathBuf, String> {
+        match self.twin {
+            Twin::File => Ok(process::root().join("benches").join(format!("{}.toml", self.name))),
+            Twin::Sphereflake { depth } => {
+                let file = scratch.join(format!("{}.toml", self.name));
+                std::fs::write(&file, sphereflake::scene(depth))
+                    .map_err(|error| format!("cannot write {}: {error}", file.display()))?;
+                Ok(file)
+            }
+        }
+    }
 }
 
 /// Runs the commands that there are in turn, once to warm up and `runs` times to count.
@@ -99,7 +131,7 @@ fn alternate(mut commands: [Option<Command>; 2], runs: usize) -> Result<[Vec<Cos
 fn snell_command(snell: &Path, scene: &Path, picture: &Path) -> Command {
     let mut command = process::program(&snell.to_string_lossy());
     command.arg("render").arg(scene).arg("-o").arg(picture);
-    command.args(["--width", WIDTH, "--height", HEIGHT, "--threads", THREADS]);
+    command.args(["--width", WIDTH, "--height", HEIGHT, "--threads", THREADS, "--aa", "none", "--quiet"]);
     command.stdout(Stdio::null()).stderr(Stdio::null());
     command
 }
@@ -129,9 +161,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_case_has_its_scene_for_the_peer() {
+    fn every_case_has_both_its_scenes() {
         for case in CASES {
             assert!(process::root().join("benches/povray").join(case.pov).is_file(), "{}", case.pov);
+            if matches!(case.twin, Twin::File) {
+                let twin = case.twin(Path::new("")).expect("it is a path");
+                assert!(twin.is_file(), "{}", twin.display());
+            }
         }
     }
 
