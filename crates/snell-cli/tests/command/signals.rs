@@ -8,8 +8,11 @@ use crate::support::{Folder, Run};
 
 /// Hours of work, in tiles of which each takes a moment.
 const SLOW: &str = "render nine-red-balls --width 1600 --aa 1024 --tile 4 -o slow.png --json";
-/// A single tile that takes hours, so that nobody looks whether to go on.
-const STUCK: &str = "render nine-red-balls --width 1600 --aa 1024 --tile 65536 -o slow.png";
+/// Inside a mirroring ball every ray is reflected a thousand times: one pixel alone takes minutes, and nobody looks whether to
+/// go on before it is done.
+const STUCK_SCENE: &str = "[render]\ndepth = 1000\nmin_weight = 0\n[camera]\neye = [0, 0, 0.5]\n\
+    [[object]]\nsphere = {}\nmaterial = { mirror = 1 }\n";
+const STUCK: &str = "render stuck.toml --width 64 --aa 65536 -o slow.png";
 
 /// How long the command may take to begin rendering.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -56,6 +59,7 @@ fn an_interrupted_picture_is_written() {
 #[test]
 fn a_second_signal_ends_at_once() {
     let folder = Folder::new();
+    folder.write("stuck.toml", STUCK_SCENE);
     let run = interrupted(&folder, STUCK, "-INT", |child| {
         sleep(Duration::from_millis(100));
         if child.try_wait().unwrap().is_none() {
@@ -63,5 +67,5 @@ fn a_second_signal_ends_at_once() {
         }
     });
     assert_eq!(run.code, Some(130), "{run:?}");
-    assert!(folder.names().is_empty() && run.stderr.is_empty(), "nothing is written: {run:?}");
+    assert!(folder.names() == ["stuck.toml"] && run.stderr.is_empty(), "nothing is written: {run:?}");
 }
