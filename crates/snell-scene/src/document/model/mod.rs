@@ -137,7 +137,8 @@ pub struct Render {
     pub antialiasing: Either<AntialiasingMethod, u32>,
     /// What blocks light.
     pub shadows: Shadows,
-    /// Into how many bands of wavelength white light splits at glass whose index depends on the wavelength. Each sample of a
+    /// Into at most how many bands of wavelength white light splits at glass whose index depends on the wavelength: it splits
+    /// into as many as the picture can show apart. Each sample of a
     /// pixel splits it at other places, so that more samples see more wavelengths.
     #[schemars(range(min = 1, max = 64))]
     pub bands: u32,
