@@ -29,8 +29,7 @@ pub struct Whitted {
 }
 
 impl Whitted {
-    /// For a scene seen by a camera, splitting white light into at most `bands` wavelength bands at
-    /// dispersive surfaces.
+    /// For a scene seen by a camera, splitting white light into at most `bands` wavelength bands at dispersive surfaces.
     pub fn new(scene: &CompiledScene, camera: &Camera, bands: u32) -> Self {
         let [u, v, w] = camera.axes();
         let Window { left, right, bottom, top } = camera.window();

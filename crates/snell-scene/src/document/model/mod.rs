@@ -138,8 +138,8 @@ pub struct Render {
     /// What blocks light.
     pub shadows: Shadows,
     /// Into at most how many bands of wavelength white light splits at glass whose index depends on the wavelength: it splits
-    /// into as many as the picture can show apart. Each sample of a
-    /// pixel splits it at other places, so that more samples see more wavelengths.
+    /// into as many as the picture can show apart. Each sample of a pixel splits it at other places, so that more samples
+    /// see more wavelengths.
     #[schemars(range(min = 1, max = 64))]
     pub bands: u32,
 }
