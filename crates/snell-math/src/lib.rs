@@ -11,6 +11,7 @@
 pub mod bounds;
 pub mod color;
 pub mod dispersion;
+pub mod homogeneous;
 pub mod portable;
 pub mod ray;
 pub mod roots;
@@ -22,6 +23,7 @@ pub mod vector;
 pub use bounds::Bounds3;
 pub use color::Rgb;
 pub use dispersion::Dispersion;
+pub use homogeneous::{Homogeneous2, Homogeneous3, Matrix4};
 pub use ray::Ray;
 pub use transform::Transform;
 pub use vector::{Normal3, Point3, Vector3};

@@ -18,6 +18,8 @@ pub mod statistics;
 pub mod task;
 pub mod texture;
 pub mod trace;
+pub mod vector;
+pub mod viewing;
 
 pub use snell_image as image;
 pub use snell_math as math;

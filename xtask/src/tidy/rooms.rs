@@ -22,13 +22,18 @@ struct Room {
 
 /// From the leaves to the door; a room only ever uses rooms above it in this list.
 const ROOMS: &[Room] = &[
+    Room { name: "viewing", may_use: &[] },
+    Room { name: "vector", may_use: &[] },
+    Room { name: "plot", may_use: &["viewing", "vector"] },
     Room { name: "accel", may_use: &[] },
     Room { name: "shape", may_use: &[] },
     Room { name: "csg", may_use: &["shape"] },
+    // The curves that shapes and solids are drawn by.
+    Room { name: "outline", may_use: &["shape", "csg"] },
     Room { name: "optics", may_use: &[] },
     Room { name: "texture", may_use: &[] },
     Room { name: "light", may_use: &[] },
-    Room { name: "camera", may_use: &[] },
+    Room { name: "camera", may_use: &["viewing"] },
     Room { name: "film", may_use: &[] },
     Room { name: "statistics", may_use: &[] },
     // Patterns are read a little inside the surface, by as much as textures say.
