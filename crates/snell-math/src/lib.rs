@@ -23,7 +23,7 @@ pub mod vector;
 pub use bounds::Bounds3;
 pub use color::Rgb;
 pub use dispersion::Dispersion;
-pub use homogeneous::{Homogeneous2, Homogeneous3, Matrix4};
+pub use homogeneous::{Homogeneous2, Homogeneous3, HomogenizeError, Matrix4};
 pub use ray::Ray;
 pub use transform::Transform;
 pub use vector::{Normal3, Point3, Vector3};

@@ -7,6 +7,9 @@
 use snell_math::{Point3, Ray, Vector3, portable};
 use snell_scene::scene;
 
+use crate::viewing::{Pipeline, Rectangle, RectangleMap, ViewVolume, ViewingError, view_axes};
+pub use crate::viewing::{Projection, Rectangle as Window};
+
 /// A camera for a picture of a given size. World space.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
@@ -15,33 +18,14 @@ pub struct Camera {
     up: Vector3,
     back: Vector3,
     projection: Projection,
-    window: Window,
+    /// In eye space; in perspective on the plane z = −1.
+    window: Rectangle,
     near: f64,
     far: f64,
     cells: [f64; 2],
     shift: f64,
-}
-
-/// How points reach the window's plane.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Projection {
-    /// Along lines through the eye; the window lies on the plane z = −1 of eye space.
-    Perspective,
-    /// Along lines parallel to the gaze.
-    Orthographic,
-}
-
-/// The part of the window's plane that the picture shows, in eye space.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Window {
-    /// x of the left border.
-    pub left: f64,
-    /// x of the right border.
-    pub right: f64,
-    /// y of the bottom border.
-    pub bottom: f64,
-    /// y of the top border.
-    pub top: f64,
+    window_from_raster: RectangleMap,
+    raster_from_window: RectangleMap,
 }
 
 /// Where a world point appears.
@@ -55,22 +39,11 @@ pub struct RasterPoint {
     pub depth: f64,
 }
 
-/// What makes a camera unusable; readers of scenes refuse these before.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum CameraError {
-    /// The gaze is zero or not finite, or parallel to the up vector.
-    #[error("the camera's gaze must not be zero or parallel to its up vector")]
-    DegenerateOrientation,
-    /// The window has no area, or the picture no pixels.
-    #[error("the camera's window is empty")]
-    EmptyWindow,
-}
-
 impl Camera {
     /// The camera of a scene for a picture of `width` × `height` pixels.
     ///
     /// # Errors
-    /// [`CameraError`], where the orientation or the window is degenerate.
+    /// [`ViewingError`], where the orientation or the window is degenerate.
     ///
     /// ```
     /// use snell::camera::Camera;
@@ -85,27 +58,14 @@ impl Camera {
         width: u32,
         height: u32,
         grid: scene::PixelGrid,
-    ) -> Result<Self, CameraError> {
-        use CameraError::{DegenerateOrientation, EmptyWindow};
-        let back = (-description.gaze).try_normalize().ok_or(DegenerateOrientation)?;
-        let up = description.up.try_normalize().ok_or(DegenerateOrientation)?;
-        let right = up.cross(back);
-        // Below this the right-hand direction is mere rounding noise.
-        if right.length() < 1e-9 {
-            return Err(DegenerateOrientation);
-        }
-        let right = right.normalize();
+    ) -> Result<Self, ViewingError> {
+        let [right, up, back] = view_axes(description.gaze, description.up)?;
         let (w, h) = (f64::from(width), f64::from(height));
         if width == 0 || height == 0 {
-            return Err(EmptyWindow);
+            return Err(ViewingError::NoPixels { width: w, height: h });
         }
         let aspect = h / w;
-        let symmetric = |half_width: f64, half_height: f64| Window {
-            left: -half_width,
-            right: half_width,
-            bottom: -half_height,
-            top: half_height,
-        };
+        let symmetric = |x: f64, y: f64| Rectangle { left: -x, right: x, bottom: -y, top: y };
         let (projection, window, near, far) = match description.frame {
             scene::Frame::HorizontalFov(angle) => {
                 let half = portable::tan(0.5 * angle);
@@ -120,31 +80,46 @@ impl Camera {
             }
             scene::Frame::PerspectiveWindow { left, right, bottom, top, near, far } => {
                 let unit = -1.0 / near;
-                let window = Window { left: left * unit, right: right * unit, bottom: bottom * unit, top: top * unit };
+                let window =
+                    Rectangle { left: left * unit, right: right * unit, bottom: bottom * unit, top: top * unit };
                 (Projection::Perspective, window, near, far)
             }
             scene::Frame::OrthographicWindow { left, right, bottom, top, near, far } => {
-                (Projection::Orthographic, Window { left, right, bottom, top }, near, far)
+                (Projection::Orthographic, Rectangle { left, right, bottom, top }, near, far)
             }
         };
-        let (spread_x, spread_y) = (window.right - window.left, window.top - window.bottom);
-        if !(spread_x > 0.0 && spread_y > 0.0 && spread_x.is_finite() && spread_y.is_finite()) {
-            return Err(EmptyWindow);
-        }
         // With rays at the corners of the cells there is one ray more than cells, and the first lies on the border.
         let (cells, shift) = match grid {
             scene::PixelGrid::Centers => ([w, h], 0.0),
             scene::PixelGrid::Corners => ([(w - 1.0).max(1.0), (h - 1.0).max(1.0)], 0.5),
         };
+        // Raster y runs down: the window's top is at the raster's smaller y.
+        let raster = Rectangle { left: shift, right: cells[0] + shift, bottom: shift, top: cells[1] + shift };
+        let turned_over = Rectangle { bottom: window.top, top: window.bottom, ..window };
+        let window_from_raster = RectangleMap::new(&raster, &turned_over)?;
+        let raster_from_window = window_from_raster.inverse();
         let eye = description.eye;
-        Ok(Self { eye, right, up: back.cross(right), back, projection, window, near, far, cells, shift })
+        Ok(Self {
+            eye,
+            right,
+            up,
+            back,
+            projection,
+            window,
+            near,
+            far,
+            cells,
+            shift,
+            window_from_raster,
+            raster_from_window,
+        })
     }
 
     /// The ray through a raster position. Its direction has unit length; it starts at the eye, on the near plane where the
     /// window gives one, and on the plane through the eye for an orthographic camera.
     #[inline]
     pub fn generate_ray(&self, x: f64, y: f64) -> Ray {
-        let [window_x, window_y] = self.window_point(x, y);
+        let [window_x, window_y] = self.window_from_raster.point([x, y]);
         let across = self.right * window_x + self.up * window_y;
         match self.projection {
             Projection::Perspective => {
@@ -176,7 +151,8 @@ impl Camera {
             Projection::Perspective => return None,
             Projection::Orthographic => 1.0,
         };
-        let [x, y] = self.raster_point([from_eye.dot(self.right) * scale, from_eye.dot(self.up) * scale]);
+        let across = [from_eye.dot(self.right) * scale, from_eye.dot(self.up) * scale];
+        let [x, y] = self.raster_from_window.point(across);
         Some(RasterPoint { x, y, depth })
     }
 
@@ -217,28 +193,59 @@ impl Camera {
     }
 
     /// The window, on the plane z = −1 of eye space in perspective.
-    pub fn window(&self) -> Window {
+    pub fn window(&self) -> Rectangle {
         self.window
     }
 
-    /// From raster coordinates to the window's plane.
-    #[inline]
-    fn window_point(&self, x: f64, y: f64) -> [f64; 2] {
-        let w = &self.window;
-        [
-            w.left + (w.right - w.left) * ((x - self.shift) / self.cells[0]),
-            w.top - (w.top - w.bottom) * ((y - self.shift) / self.cells[1]),
-        ]
+    /// The camera's own near and far planes, as z in eye space: 0 and −∞ for one that has none.
+    pub fn planes(&self) -> [f64; 2] {
+        [self.near, self.far]
     }
 
-    /// From the window's plane to raster coordinates.
-    #[inline]
-    fn raster_point(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        let w = &self.window;
-        [
-            (x - w.left) / (w.right - w.left) * self.cells[0] + self.shift,
-            (w.top - y) / (w.top - w.bottom) * self.cells[1] + self.shift,
-        ]
+    /// The lecture's matrices for this camera, with what it sees between the planes `near` and `far` in eye space; those that the
+    /// camera has itself are within its reach alone. Its pixel coordinates have y up; [`Camera::raster_from_pixel`] turns them
+    /// over.
+    ///
+    /// ```
+    /// use snell::camera::Camera;
+    /// use snell::math::Point3;
+    /// use snell::scene::scene::{self, PixelGrid};
+    /// let camera = Camera::new(&scene::Camera::default(), 640, 480, PixelGrid::Centers)?;
+    /// let point = Point3::new(0.25, 0.5, 1.0);
+    /// let pixel = camera.pipeline(-1.0, -50.0)?.follow(point).pixel.unwrap();
+    /// let [x, y] = camera.raster_from_pixel([pixel.x(), pixel.y()]);
+    /// let drawn = camera.project(point).unwrap();
+    /// assert!((drawn.x - x).abs() < 1e-10 && (drawn.y - y).abs() < 1e-10);
+    /// # Ok::<(), snell::viewing::ViewingError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`ViewingError`] where the planes are not finite, in the wrong order, or in perspective not before the eye.
+    pub fn pipeline(&self, near: f64, far: f64) -> Result<Pipeline, ViewingError> {
+        let window = match self.projection {
+            Projection::Perspective => {
+                let Rectangle { left, right, bottom, top } = self.window;
+                Rectangle { left: left * -near, right: right * -near, bottom: bottom * -near, top: top * -near }
+            }
+            Projection::Orthographic => self.window,
+        };
+        let volume = ViewVolume { window, near, far };
+        let pixels = self.pixels();
+        let pipeline = Pipeline::new(self.eye, self.axes(), self.projection, &volume, pixels)?;
+        // The window's border in the lecture's pixel coordinates: from −½ on, or with rays at the corners of cells from 0.
+        let start = self.shift - 0.5;
+        Ok(pipeline.onto(&Rectangle::new(start, self.cells[0] + start, start, self.cells[1] + start)))
+    }
+
+    /// Raster coordinates (y down, (0, 0) the upper left corner) of the lecture's pixel coordinates (y up, centres at integers).
+    pub fn raster_from_pixel(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [x + 0.5, self.cells[1] + 2.0 * self.shift - 0.5 - y]
+    }
+
+    /// The picture's size in pixels.
+    pub fn pixels(&self) -> [u32; 2] {
+        // Whole numbers that came from u32.
+        self.cells.map(|cells| (cells + 2.0 * self.shift) as u32)
     }
 }
 
@@ -298,12 +305,62 @@ mod tests {
         }
     }
 
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+        #[test]
+        fn the_matrices_are_those_of_the_camera(
+            frame in frames(), gaze in vectors(), up in vectors(), size in (1..2000u32, 1..2000u32), x in -0.1..1.1f64,
+            y in -0.1..1.1f64, depth in 0.0..1.0f64, corners in any::<bool>(),
+        ) {
+            prop_assume!(gaze.cross(up).length() > 1e-3);
+            let grid = if corners { PixelGrid::Corners } else { PixelGrid::Centers };
+            let description = scene::Camera { eye: Point3::new(1.0, -2.0, 3.0), gaze, up, frame };
+            let camera = Camera::new(&description, size.0, size.1, grid).expect("not degenerate");
+            prop_assert_eq!(camera.pixels(), [size.0, size.1]);
+            let pipeline = camera.pipeline(-1.0, -20.0).expect("in order");
+            let ray = camera.generate_ray(x * f64::from(size.0), y * f64::from(size.1));
+            let step = |z: f64| (z - camera.project(ray.origin).map_or(0.0, |p| p.depth)) / -ray.direction.dot(camera.back);
+            let point = ray.at(step(1.0 + 19.0 * depth));
+            let stages = pipeline.follow(point);
+            let pixel = stages.pixel.expect("before the eye");
+            let raster = camera.raster_from_pixel([pixel.x(), pixel.y()]);
+            let direct = camera.project(point).expect("before the eye");
+            let tolerance = 1e-9 * f64::from(size.0.max(size.1)) * (1.0 + 1.0 / camera.window.width().min(1.0));
+            prop_assert!((raster[0] - direct.x).abs() < tolerance, "{:?} {:?}", raster, direct);
+            prop_assert!((raster[1] - direct.y).abs() < tolerance, "{:?} {:?}", raster, direct);
+            // What is in the picture is what clipping lets pass.
+            let margin = |v: f64| v.abs().min((v - 1.0).abs());
+            if !corners && margin(x) > 1e-6 && margin(y) > 1e-6 && margin(depth) > 1e-6 {
+                let inside = (0.0..1.0).contains(&x) && (0.0..1.0).contains(&y);
+                prop_assert_eq!(stages.outside.is_empty(), inside, "{:?}", stages);
+            }
+        }
+
+        #[test]
+        fn every_camera_reduces_to_the_simplest_view(
+            gaze in vectors(), up in vectors(), eye in vectors(), fov in 0.1..2.5f64, x in 0.0..640.0f64, y in 0.0..480.0f64,
+        ) {
+            prop_assume!(gaze.cross(up).length() > 1e-3);
+            let eye = Point3::ORIGIN + eye * 10.0;
+            let description = scene::Camera { eye, gaze, up, frame: Frame::HorizontalFov(fov) };
+            let camera = Camera::new(&description, 640, 480, PixelGrid::Centers).expect("not degenerate");
+            // The image plane is as far from the eye as makes a pixel one unit wide.
+            let n = 640.0 / camera.window().width();
+            let simplest = crate::viewing::ray_view(eye, gaze, up, 640.0, 480.0, n).expect("not degenerate");
+            let ray = camera.generate_ray(x, y);
+            let t = n / -ray.direction.dot(camera.back);
+            let on_plane = simplest.map(ray.at(t)).homogenize().expect("a point");
+            let expected = Point3::new(x, 480.0 - y, 0.0);
+            prop_assert!(on_plane.distance(expected) < 1e-9 * n.max(640.0), "{:?} {:?}", on_plane, expected);
+        }
+    }
+
     #[test]
     fn corner_rays_touch_the_border() {
         let camera = Camera::new(&scene::Camera::default(), 513, 513, PixelGrid::Corners).expect("camera");
-        let [x, _] = camera.window_point(0.5, 0.5);
+        let [x, _] = camera.window_from_raster.point([0.5, 0.5]);
         assert_eq!(x, camera.window().left);
-        let [x, _] = camera.window_point(512.5, 0.5);
+        let [x, _] = camera.window_from_raster.point([512.5, 0.5]);
         assert_eq!(x, camera.window().right);
     }
 
@@ -312,13 +369,16 @@ mod tests {
         let base = scene::Camera::default();
         let parallel = scene::Camera { up: base.gaze, ..base.clone() };
         let still = scene::Camera { gaze: Vector3::ZERO, ..base.clone() };
-        let flat = scene::Camera { frame: Frame::OrthographicWidth(0.0), ..base };
-        for (camera, error) in [
-            (parallel, CameraError::DegenerateOrientation),
-            (still, CameraError::DegenerateOrientation),
-            (flat, CameraError::EmptyWindow),
+        let flat = scene::Camera { frame: Frame::OrthographicWidth(0.0), ..base.clone() };
+        let nan = scene::Camera { frame: Frame::HorizontalFov(f64::NAN), ..base };
+        for (camera, message) in [
+            (parallel, "the gaze (0, 0, -1) is parallel to the up vector (0, 0, -1)"),
+            (still, "the gaze is (0, 0, 0), which has no direction"),
+            (flat, "the width to map onto is empty: it goes from -0 to 0"),
+            (nan, "left is NaN, which is no finite number"),
         ] {
-            assert_eq!(Camera::new(&camera, 4, 4, PixelGrid::Centers), Err(error));
+            let error = Camera::new(&camera, 4, 4, PixelGrid::Centers).expect_err(message);
+            assert_eq!(error.to_string(), message);
         }
     }
 

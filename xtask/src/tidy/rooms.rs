@@ -76,7 +76,7 @@ const ROOMS: &[Room] = &[
     Room { name: "trace", may_use: &["optics", "statistics", "task", "observe", "geometry", "compile", "integrator"] },
     Room {
         name: "render",
-        may_use: &["camera", "film", "statistics", "observe", "geometry", "compile", "integrator", "trace"],
+        may_use: &["viewing", "camera", "film", "statistics", "observe", "geometry", "compile", "integrator", "trace"],
     },
 ];
 

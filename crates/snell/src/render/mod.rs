@@ -18,7 +18,7 @@ use snell_math::{Ray, Rgb, sampling};
 
 pub use settings::RenderSettings;
 
-use crate::camera::{Camera, CameraError};
+use crate::camera::Camera;
 use crate::compile::CompiledScene;
 use crate::film::{Film, PixelSum};
 use crate::integrator::{Integrator, Rules, Whitted};
@@ -27,6 +27,7 @@ use crate::render::adaptive::{Contrast, Display, Range};
 use crate::render::layers::{FirstHit, FirstHits};
 use crate::statistics::Statistics;
 use crate::trace::{Scratch, Tracer};
+use crate::viewing::ViewingError;
 
 /// Told how far rendering is, and asked whether to go on. Called from several threads.
 pub trait Progress: Sync {
@@ -68,7 +69,7 @@ pub struct Rendering {
 /// The picture depends on the scene and the settings alone: not on the number of threads, nor on the size of tiles.
 ///
 /// # Errors
-/// [`CameraError`], where the scene's camera is degenerate.
+/// [`ViewingError`], where the scene's camera is degenerate.
 ///
 /// ```
 /// use snell::compile::CompiledScene;
@@ -99,7 +100,7 @@ pub fn render(
     scene: &CompiledScene,
     settings: &RenderSettings,
     progress: &dyn Progress,
-) -> Result<Rendering, CameraError> {
+) -> Result<Rendering, ViewingError> {
     let camera = settings.camera(scene)?;
     let integrator = Whitted::new(scene, &camera, settings.bands);
     let job = Job { scene, integrator: &integrator, camera: &camera, settings };
@@ -114,13 +115,13 @@ pub fn render(
 /// Traces one sample of one pixel with the code that renders it, and remembers everything.
 ///
 /// # Errors
-/// [`CameraError`], where the scene's camera is degenerate.
+/// [`ViewingError`], where the scene's camera is degenerate.
 pub fn explain(
     scene: &CompiledScene,
     settings: &RenderSettings,
     pixel: [u32; 2],
     sample: u32,
-) -> Result<RayTree, CameraError> {
+) -> Result<RayTree, ViewingError> {
     let camera = settings.camera(scene)?;
     let integrator = Whitted::new(scene, &camera, settings.bands);
     let job = Job { scene, integrator: &integrator, camera: &camera, settings };

@@ -5,8 +5,9 @@ use std::ops::Range;
 use snell_image::tone::ToneCurve;
 use snell_scene::scene::{self, Antialiasing, PixelGrid, Shadows};
 
-use crate::camera::{Camera, CameraError};
+use crate::camera::Camera;
 use crate::compile::CompiledScene;
+use crate::viewing::ViewingError;
 
 /// Settings of one rendering.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,8 +68,8 @@ impl RenderSettings {
     /// The scene's camera for a picture of this size.
     ///
     /// # Errors
-    /// [`CameraError`], where it is degenerate.
-    pub fn camera(&self, scene: &CompiledScene) -> Result<Camera, CameraError> {
+    /// [`ViewingError`], where it is degenerate.
+    pub fn camera(&self, scene: &CompiledScene) -> Result<Camera, ViewingError> {
         Camera::new(&scene.camera, self.width, self.height, self.pixel_grid)
     }
 

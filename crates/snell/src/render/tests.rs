@@ -8,8 +8,8 @@ use snell_testkit::must_fail;
 
 use super::adaptive::{Contrast, Display};
 use super::{Job, Progress, RenderSettings, Whitted, explain, render};
-use crate::camera::CameraError;
 use crate::compile::CompiledScene;
+use crate::viewing::ViewingError;
 
 /// A glowing ball before a grey background.
 fn ball() -> Scene {
@@ -182,12 +182,16 @@ fn cameras_that_see_nothing_are_errors() {
     let mut scene = ball();
     let compiled = CompiledScene::build(&scene).expect("it compiles");
     let none = settings(&scene, 0, 5);
-    assert_eq!(render(&compiled, &none, &super::NoProgress).err(), Some(CameraError::EmptyWindow));
-    assert_eq!(explain(&compiled, &none, [0, 0], 0).err(), Some(CameraError::EmptyWindow));
+    assert_eq!(
+        render(&compiled, &none, &super::NoProgress).err(),
+        Some(ViewingError::NoPixels { width: 0.0, height: 5.0 })
+    );
+    assert_eq!(explain(&compiled, &none, [0, 0], 0).err(), Some(ViewingError::NoPixels { width: 0.0, height: 5.0 }));
     scene.camera.gaze = scene.camera.up;
     let compiled = CompiledScene::build(&scene).expect("it compiles");
     let error = render(&compiled, &settings(&scene, 4, 4), &super::NoProgress).err();
-    assert_eq!(error, Some(CameraError::DegenerateOrientation));
+    let parallel = ViewingError::Parallel { gaze: [0.0, 1.0, 0.0], up: [0.0, 1.0, 0.0] };
+    assert_eq!(error, Some(parallel));
 }
 
 #[test]

@@ -62,6 +62,12 @@ pub enum ViewingError {
         /// f.
         far: f64,
     },
+    /// The eye is on the image plane or on its wrong side.
+    #[error("the eye is {distance} before the image plane, but must be before it by a positive, finite distance")]
+    EyeNotBeforePlane {
+        /// n.
+        distance: f64,
+    },
     /// A vector without a direction.
     #[error("{what} is ({x}, {y}, {z}), which has no direction")]
     NoDirection {

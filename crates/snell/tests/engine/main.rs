@@ -14,3 +14,4 @@ mod optics;
 mod robust;
 mod seven_rays;
 mod spd;
+mod viewing;
