@@ -5,7 +5,8 @@ use snell_scene::Scene;
 use snell_scene::assets::MemoryAssets;
 use snell_scene::document::read_scene;
 use snell_scene::scene::{
-    Antialiasing, Background, CsgOperation, Falloff, Frame, LightKind, ObjectKind, Pattern, Shape, Space,
+    Align, Antialiasing, AxesLength, AxisPlace, Background, CsgOperation, CurveKind, Drawing, Extent, Falloff, Frame,
+    HiddenLines, LightKind, ObjectKind, Pattern, PlotFit, Shape, Space, Ticks,
 };
 
 fn read(text: &str) -> Scene {
@@ -275,4 +276,93 @@ fn json_says_the_same() {
         format!("{:?} {:?} {:?} {:?}", scene.ambient, object.name, object.kind, object.parent_from_object)
     };
     assert_eq!(without_span(&toml), without_span(&json));
+}
+
+#[test]
+fn drawings_have_their_marks() {
+    let scene = read_with(
+        r#"
+        [image]
+        width = 300
+        height = 200
+        [drawing]
+        axes = true
+        crease_angle = 180
+        ground_grid = { spacing = 0.5 }
+        viewport = [0.25, 0.75, 0.5, 1]
+        [[drawing.point]]
+        label = "*P*"
+        position = [1, 2, 3]
+        [[drawing.line]]
+        points = [[0, 0, 0], [1, 0, 0], [1, 1, 0]]
+        project_to = "second"
+        [[drawing.grid]]
+        corner = [0, 0, 0]
+        edges = [[4, 0, 0], [0, 3, 0]]
+        count = [8, 6]
+        [[drawing.camera]]
+        view = { eye = [0, 0, 8] }
+        [[drawing.camera]]
+        name = "second"
+        view = { gaze = [0, 0, -1], projection = "orthographic", window = { left = -2, right = 2, bottom = -1, top = 1, near = -3 } }
+        [[drawing.camera]]
+        view = { gaze = [0, 0, -1] }
+        near = -5
+        pixels = [4, 3]
+        "#,
+        &["drawing.hidden=dashed", "drawing.camera.second.frustum=false"],
+    );
+    let drawing = scene.drawing;
+    assert_eq!((drawing.hidden, drawing.axes), (HiddenLines::Dashed, Some(AxesLength::Fitting)));
+    assert_eq!(drawing.crease_angle, std::f64::consts::PI);
+    assert_eq!(drawing.viewport, Extent { left: 0.25, right: 0.75, bottom: 0.5, top: 1.0 });
+    assert_eq!(drawing.points[0].position, Point3::new(1.0, 2.0, 3.0));
+    assert_eq!((drawing.lines[0].points.len(), drawing.lines[0].project_to), (3, Some(1)));
+    assert_eq!((drawing.grids[0].count, drawing.grids[0].edges[1]), ([8, 6], Vector3::new(0.0, 3.0, 0.0)));
+    let volumes: Vec<_> = drawing.cameras.iter().map(|camera| (camera.aspect, camera.near, camera.far)).collect();
+    assert_eq!(volumes, [(1.5, -2.0, -12.0), (2.0, -3.0, -6.0), (4.0 / 3.0, -5.0, -10.0)]);
+    let frusta: Vec<bool> = drawing.cameras.iter().map(|camera| camera.frustum).collect();
+    assert_eq!(frusta, [true, false, true]);
+    assert_eq!(read("").drawing, Drawing::default());
+    let length = read_with("", &["drawing.axes=2.5"]).drawing.axes;
+    assert_eq!(length, Some(AxesLength::Length(2.5)));
+}
+
+#[test]
+fn plots_have_windows_axes_and_curves() {
+    let scene = read_with(
+        r#"
+        [[plot]]
+        name = "wave"
+        window = [0, "2*pi", -1, 1]
+        x = { pi = true, ticks = ["pi/2", { at = "pi", label = "half" }], arrow = true }
+        y = { every = "1/2", at = "border" }
+        [[plot.curve]]
+        function = { y = "cos(x)" }
+        [[plot.curve]]
+        parametric = { x = "cos(t)", y = "sin(t)", to = "2*pi" }
+        fill = "white"
+        [[plot.curve]]
+        data = { points = [[0, 1], [2, 3]], line = false, marks = true }
+        [[plot.label]]
+        at = ["pi", 0.5]
+        text = "*M*_v"
+        align = "left"
+        "#,
+        &["plot.wave.fit=keep"],
+    );
+    use std::f64::consts::{FRAC_PI_2, PI, TAU};
+    let [plot] = scene.plots.as_slice() else { panic!() };
+    assert_eq!(plot.window, Extent { left: 0.0, right: TAU, bottom: -1.0, top: 1.0 });
+    assert_eq!((plot.viewport, plot.fit), (Extent::UNIT, PlotFit::Keep));
+    assert_eq!(plot.x.ticks, Ticks::At(vec![(FRAC_PI_2, None), (PI, Some("half".to_owned()))]));
+    assert_eq!((&plot.y.ticks, plot.y.at, plot.x.at), (&Ticks::Every(0.5), AxisPlace::Border, AxisPlace::At(0.0)));
+    assert!(plot.x.pi && plot.x.arrow && !plot.y.pi && plot.y.show);
+    let CurveKind::Function { y, from: 0.0, to: TAU } = &plot.curves[0].kind else { panic!() };
+    assert_eq!(y.evaluate(0.0), 1.0);
+    let CurveKind::Parametric { x, y, from: 0.0, to: TAU } = &plot.curves[1].kind else { panic!() };
+    assert_eq!((x.evaluate(0.0), y.evaluate(0.0), plot.curves[1].fill), (1.0, 0.0, Some(Rgb::WHITE)));
+    let CurveKind::Data { points, closed: false, line: false, marks: true } = &plot.curves[2].kind else { panic!() };
+    assert_eq!(points, &[[0.0, 1.0], [2.0, 3.0]]);
+    assert_eq!((plot.labels[0].at, plot.labels[0].align), ([PI, 0.5], Align::Left));
 }

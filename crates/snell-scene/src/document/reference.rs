@@ -87,8 +87,8 @@ fn takes(part: Part<'_>) -> String {
     for (name, target) in linked {
         let anchor = name.to_lowercase();
         let link = |word: &str| format!("[{word}](#{anchor})");
-        if target.text("x-called").is_some() {
-            phrase = phrase.replacen("a colour", &link("a colour"), 1);
+        if let Some(called) = target.text("x-called") {
+            phrase = phrase.replacen(called, &link(called), 1);
         } else if target.kind() == Some("object") {
             phrase = if phrase.contains("tables") {
                 phrase.replacen("tables", &link("tables"), 1)

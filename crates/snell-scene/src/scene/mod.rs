@@ -5,10 +5,13 @@
 
 pub mod background;
 pub mod camera;
+pub mod drawing;
+pub mod expression;
 pub mod light;
 pub mod material;
 pub mod mesh;
 pub mod object;
+pub mod plot;
 pub mod settings;
 pub mod texture;
 
@@ -16,10 +19,15 @@ use snell_math::Rgb;
 
 pub use background::{Background, ImageAsset};
 pub use camera::{Camera, Frame};
+pub use drawing::{
+    AxesLength, CameraMark, Drawing, Extent, GridMark, GroundGrid, HiddenLines, LineMark, PointMark, StrokeBy,
+};
+pub use expression::{Expression, ExpressionError};
 pub use light::{Falloff, Light, LightKind};
 pub use material::{Dielectric, Material, Medium};
 pub use mesh::Mesh;
 pub use object::{CsgOperation, Grid, Object, ObjectKind, Prototype, Shape};
+pub use plot::{Align, Axis, AxisPlace, CurveKind, Plot, PlotCurve, PlotFit, PlotLabel, Ticks};
 pub use settings::{Antialiasing, PixelGrid, Settings, Shadows, Tone};
 pub use texture::{Mapping, Pattern, Space, Texture};
 
@@ -51,4 +59,8 @@ pub struct Scene {
     pub prototypes: Table<Prototype>,
     /// What stands in the world.
     pub objects: Vec<Object>,
+    /// How the author wants it drawn as lines.
+    pub drawing: Drawing,
+    /// Plots, which need nothing else of the scene.
+    pub plots: Vec<Plot>,
 }

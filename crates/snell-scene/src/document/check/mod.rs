@@ -147,11 +147,22 @@ impl<'a> Checker<'a> {
             }
         } else if let Value::Table(_) = &node.value
             && wanted("array")
-            && let [Step::Key(key)] = self.path.as_slice()
+            && let Some(key) = self.section()
         {
             diagnostic = diagnostic.help(format!("write `[[{key}]]`, with two brackets"));
         }
         self.tell(diagnostic);
+    }
+
+    /// The way to the value now looked at, where it has one or two keys: what may be the name of a section.
+    fn section(&self) -> Option<String> {
+        match self.path.as_slice() {
+            [Step::Key(key)] => Some(key.clone()),
+            [Step::Key(outer), Step::Key(key)] | [Step::Key(outer), Step::Index(_), Step::Key(key)] => {
+                Some(format!("{outer}.{key}"))
+            }
+            _ => None,
+        }
     }
 
     fn list(&mut self, node: &Node, items: &[Node], form: Part<'a>) -> bool {

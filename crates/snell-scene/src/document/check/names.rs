@@ -65,9 +65,9 @@ impl Names {
 }
 
 impl Checker<'_> {
-    /// Lights and objects of the same name, which `--set` could not tell apart.
+    /// Lights, objects and plots of the same name, which `--set` could not tell apart.
     pub(super) fn duplicate_names(&mut self, root: &Node) {
-        for table in ["light", "object"] {
+        for table in ["light", "object", "plot"] {
             let Some(Value::List(items)) = root.get(table).map(|node| &node.value) else { continue };
             let mut names: Vec<(&str, &Span)> = items
                 .iter()

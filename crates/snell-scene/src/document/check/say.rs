@@ -75,8 +75,10 @@ fn list_of(form: Part<'_>) -> String {
 }
 
 fn plural(item: Part<'_>) -> String {
-    if item.text("x-called") == Some("a colour") {
-        return "colours".to_owned();
+    if let Some(called) = item.text("x-called") {
+        // "a colour" are "colours", "a number or formula" are "numbers or formulas".
+        let words = called.strip_prefix("a ").unwrap_or(called).split(" or ");
+        return words.map(|word| format!("{word}s")).collect::<Vec<_>>().join(" or ");
     }
     match item.forms().as_slice() {
         [form] => match form.kind() {

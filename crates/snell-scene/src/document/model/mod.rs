@@ -9,10 +9,13 @@
 //! `x-at-most-one`, keys that exclude each other; `x-example`, a piece of a scene file for the reference.
 
 mod camera;
+mod drawing;
+mod formula;
 mod light;
 mod material;
 mod mesh;
 mod object;
+mod plot;
 mod shape;
 mod texture;
 mod value;
@@ -23,10 +26,15 @@ use serde::{Deserialize, Serialize};
 pub use camera::{
     Background, BackgroundGradient, BackgroundStop, Camera, GradientStop, Panorama, Photograph, Projection, Window,
 };
+pub use drawing::{CameraMark, Drawing, GridMark, GroundGrid, HiddenLines, LineMark, PointMark, StrokeBy};
+pub use formula::{Formula, Quantity};
 pub use light::{DirectionalLight, Falloff, FalloffLaw, Light, PointLight, PolynomialFalloff, SpotLight};
 pub use material::{Absorption, Cauchy, Dielectric, Ior, IorFormula, Material, MaterialChoice, Scattering, Sellmeier};
 pub use mesh::Mesh;
 pub use object::{Grid, Object, Step, StepVectors};
+pub use plot::{
+    Align, Axis, AxisWord, Plot, PlotCurve, PlotData, PlotFit, PlotFunction, PlotLabel, PlotParametric, Tick, TicksWord,
+};
 pub use shape::{AxisBox, Cone, Cylinder, Disk, Lens, Plane, Rectangle, Sphere, Torus};
 pub use texture::{
     CheckerPattern, GradientPattern, ImagePattern, NoiseForm, NoisePattern, Paint, Texture, TextureSpace,
@@ -70,6 +78,11 @@ pub struct Document {
     pub prototype: Named<Object>,
     /// The objects in the scene, each as `[[object]]`.
     pub object: Vec<Located<Object>>,
+    /// How the scene is drawn as lines.
+    #[schemars(extend("default" = {}))]
+    pub drawing: Drawing,
+    /// Two-dimensional pictures of functions and data, each as `[[plot]]`.
+    pub plot: Vec<Located<Plot>>,
 }
 
 /// The picture.

@@ -131,6 +131,8 @@ pub enum Form {
     Number,
     /// A list.
     List,
+    /// True or false.
+    Truth,
     /// A table.
     Table,
 }
@@ -148,6 +150,7 @@ macro_rules! forms {
 }
 forms! {
     String: Text;
+    bool: Truth;
     f64: Number;
     u32: Number;
     Triple: List;
@@ -194,6 +197,9 @@ impl<'de, A: Deserialize<'de> + Forms, B: Deserialize<'de>> Deserialize<'de> for
             }
             fn visit_str<E: Error>(self, text: &str) -> Result<Self::Value, E> {
                 choose(Form::Text, text.into_deserializer())
+            }
+            fn visit_bool<E: Error>(self, truth: bool) -> Result<Self::Value, E> {
+                choose(Form::Truth, truth.into_deserializer())
             }
             fn visit_i64<E: Error>(self, number: i64) -> Result<Self::Value, E> {
                 choose(Form::Number, number.into_deserializer())

@@ -3,6 +3,7 @@
 //! Each part goes on after a mistake with some harmless value, so that all mistakes are found; where there was any, the
 //! scene is not given out.
 
+mod drawing;
 mod files;
 mod ior;
 mod lens;
@@ -12,6 +13,7 @@ mod mesh;
 mod object;
 mod order;
 mod placement;
+mod plot;
 mod shape;
 mod size;
 mod texture;
@@ -64,6 +66,9 @@ pub(in crate::document) fn resolve(
     }
     resolver.named_prototypes(&document.prototype);
     resolver.world(&document.object);
+    let aspect = f64::from(document.image.width) / f64::from(document.image.height);
+    resolver.scene.drawing = resolver.drawing(&document.drawing, aspect);
+    resolver.scene.plots = resolver.plots(&document.plot);
     resolver.scene
 }
 

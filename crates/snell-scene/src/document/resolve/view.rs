@@ -7,7 +7,7 @@ use crate::document::model::{self, BackgroundGradient, Located, Projection, Trip
 use crate::scene::{Background, Camera, Frame};
 
 /// The sine of the angle between gaze and up below which they count as parallel.
-const PARALLEL: f64 = 1e-9;
+pub(super) const PARALLEL: f64 = 1e-9;
 
 impl Resolver<'_> {
     pub(super) fn camera(&mut self, camera: &model::Camera) -> Camera {
@@ -46,14 +46,13 @@ impl Resolver<'_> {
         if projection == Some(Projection::Orthographic) {
             for (key, value) in perspective_keys {
                 if let Some(value) = value {
-                    let message =
-                        format!("an orthographic camera has no angle of view, so `camera.{key}` means nothing");
+                    let message = format!("an orthographic camera has no angle of view, so `{key}` means nothing");
                     self.error(&value.span, message, "give `width` in world units instead");
                 }
             }
         }
         if let (Some(Projection::Perspective), Some(width)) = (projection, &camera.width) {
-            let message = "`camera.width` is for orthographic cameras, but this one is a perspective camera";
+            let message = "`width` is for orthographic cameras, but this one is a perspective camera";
             self.error(&width.span, message, "give `fov` in degrees instead");
         }
         if let Some(window) = &camera.window {
