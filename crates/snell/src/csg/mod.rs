@@ -237,6 +237,16 @@ impl CsgSolid {
         Node { bounds, kind: NodeKind::Operation { operation, first, end: self.children.len() as u32 } }
     }
 
+    /// How many leaves it has.
+    pub(crate) fn leaf_count(&self) -> u32 {
+        self.leaves.len() as u32
+    }
+
+    /// The shape of a leaf, and the map from its space to the solid's where that is another.
+    pub(crate) fn leaf_shape(&self, leaf: u32) -> (&Shape, Option<&Transform>) {
+        self.leaves[leaf as usize].traced()
+    }
+
     /// The tag of a leaf.
     pub fn tag(&self, leaf: u32) -> u32 {
         self.leaves[leaf as usize].tag

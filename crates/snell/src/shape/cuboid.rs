@@ -23,6 +23,11 @@ impl Cuboid {
         Self { min, max }
     }
 
+    /// The corners of smallest and of largest coordinates.
+    pub(crate) fn corners(&self) -> (Point3, Point3) {
+        (self.min, self.max)
+    }
+
     /// A ray within a face is inside at the smaller coordinate and outside at the larger: of two boxes that share a
     /// face, exactly one has it.
     #[inline]

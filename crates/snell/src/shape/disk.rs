@@ -21,6 +21,11 @@ impl Disk {
         Self { plane: Plane::new(center, normal), frame: Frame::around(center, normal), radius, inner_radius }
     }
 
+    /// Its frame, at the centre and with z along the normal, its inner radius and its radius.
+    pub(crate) fn frame_and_radii(&self) -> (Frame, f64, f64) {
+        (self.frame, self.inner_radius, self.radius)
+    }
+
     /// See [`super::Shape::intersect`].
     #[inline]
     pub fn intersect(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<ShapeHit> {

@@ -6,16 +6,16 @@ use snell_math::{Point3, Ray, Transform, Vector3, portable};
 
 /// Orthonormal axes at an origin. They may be left-handed after a mirroring: the shapes that use them are symmetric.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Frame {
-    pub(super) origin: Point3,
-    pub(super) x: Vector3,
-    pub(super) y: Vector3,
-    pub(super) z: Vector3,
+pub(crate) struct Frame {
+    pub(crate) origin: Point3,
+    pub(crate) x: Vector3,
+    pub(crate) y: Vector3,
+    pub(crate) z: Vector3,
 }
 
 impl Frame {
     /// With z along `axis`. For an axis +y, x is +x and y is −z, so that angles go around as on the sphere.
-    pub(super) fn around(origin: Point3, axis: Vector3) -> Self {
+    pub(crate) fn around(origin: Point3, axis: Vector3) -> Self {
         let z = axis.try_normalize().unwrap_or(Vector3::ZERO);
         let (x, y) = z.orthonormal_basis();
         Self { origin, x, y, z }

@@ -51,8 +51,18 @@ impl Frustum {
         Self { frame, length, thin: base_radius.min(top_radius), slope, normal_scale, capped, base_is_thick }
     }
 
+    /// Its frame, at the middle of the thinner end and with z to the thicker one, which is `length` away.
+    pub(crate) fn frame_and_length(&self) -> (Frame, f64) {
+        (self.frame, self.length)
+    }
+
+    /// The radius at the thinner end, and what is gained per length from there.
+    pub(crate) fn radius_and_slope(&self) -> (f64, f64) {
+        (self.thin, self.slope)
+    }
+
     /// True where caps close it.
-    pub(super) fn is_capped(&self) -> bool {
+    pub(crate) fn is_capped(&self) -> bool {
         self.capped
     }
 

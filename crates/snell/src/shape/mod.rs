@@ -11,7 +11,7 @@
 
 mod cuboid;
 mod disk;
-mod frame;
+pub(crate) mod frame;
 mod frustum;
 mod plane;
 mod rectangle;

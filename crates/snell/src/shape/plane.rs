@@ -19,6 +19,11 @@ impl Plane {
         Self { point, normal: normal.try_normalize().unwrap_or(Vector3::ZERO) }
     }
 
+    /// A point of it and its unit normal.
+    pub(crate) fn point_and_normal(&self) -> (Point3, Vector3) {
+        (self.point, self.normal)
+    }
+
     /// Where a ray meets the plane; infinite or NaN where they are parallel, which no comparison lets pass.
     #[inline]
     pub(super) fn parameter(&self, ray: &Ray) -> f64 {

@@ -26,6 +26,16 @@ impl Rectangle {
         Self { plane, corner, edges, coordinates }
     }
 
+    /// The corner and the edges from there.
+    pub(crate) fn corner_and_edges(&self) -> (Point3, [Vector3; 2]) {
+        (self.corner, self.edges)
+    }
+
+    /// The unit normal.
+    pub(crate) fn normal(&self) -> Vector3 {
+        self.plane.point_and_normal().1
+    }
+
     #[inline]
     fn coordinates_of(&self, from_corner: Vector3) -> [f64; 2] {
         [from_corner.dot(self.coordinates[0]), from_corner.dot(self.coordinates[1])]

@@ -50,6 +50,11 @@ impl Torus {
         Self { frame: Frame::around(center, axis), major: major_radius, minor: minor_radius }
     }
 
+    /// Its frame, and the major and the minor radius.
+    pub(crate) fn frame_and_radii(&self) -> (Frame, f64, f64) {
+        (self.frame, self.major, self.minor)
+    }
+
     /// The ray's line, and the part of it where the torus can be: within a sphere around it and between two planes.
     #[inline]
     fn clip(&self, ray: &Ray) -> Option<(Line, f64, f64)> {
