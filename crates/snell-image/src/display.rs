@@ -72,6 +72,19 @@ impl DisplayImage {
         Self { width: light.width(), height: light.height(), samples }
     }
 
+    /// Takes 8 bit sRGB codes, of the pixels in reading order; `None` where there is not one triple for every pixel.
+    ///
+    /// ```
+    /// use snell_image::DisplayImage;
+    /// let picture = DisplayImage::from_codes(2, 1, vec![[0, 0, 0], [255, 128, 0]]).expect("two pixels");
+    /// assert_eq!(picture.code(1, 0), [255, 128, 0]);
+    /// assert!(DisplayImage::from_codes(2, 2, vec![[0; 3]]).is_none());
+    /// ```
+    pub fn from_codes(width: u32, height: u32, codes: Vec<[u8; 3]>) -> Option<Self> {
+        let is_whole = u64::from(width) * u64::from(height) == codes.len() as u64;
+        is_whole.then(|| Self { width, height, samples: Samples::Eight(codes.into_flattened()) })
+    }
+
     /// Takes codes that a decoder read; three for every pixel.
     pub(crate) fn from_samples(width: u32, height: u32, samples: Samples) -> Self {
         let count = match &samples {

@@ -2,7 +2,56 @@
 //!
 //! Page coordinates are millimetres from the upper left corner, x to the right, y down.
 
+mod join;
+mod lines;
+mod pdf;
+mod raster;
+mod svg;
+mod text;
+#[cfg(test)]
+mod tests;
+
 use std::f64::consts::TAU;
+
+pub use join::join;
+pub use lines::arrow_head;
+pub use pdf::encode_pdf;
+pub use raster::rasterize;
+pub use svg::encode_svg;
+pub use text::{Measured, measure};
+
+/// Why a page cannot be written.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum VectorError {
+    /// A coordinate is NaN or infinite.
+    #[error("the group \"{group}\" of the drawing has a coordinate that is no finite number")]
+    NotFinite {
+        /// The group's name.
+        group: String,
+    },
+    /// A page without extent, or one that is not finite.
+    #[error("a page of {width} x {height} mm cannot be written")]
+    Page {
+        /// Millimetres.
+        width: f64,
+        /// Millimetres.
+        height: f64,
+    },
+    /// Too many pixels.
+    #[error("a drawing of {width} x {height} pixels is too large: at most {} million are possible", raster::MOST_PIXELS / 1_000_000)]
+    TooLarge {
+        /// Pixels.
+        width: u64,
+        /// Pixels.
+        height: u64,
+    },
+    /// The picture below the drawing cannot be read.
+    #[error("the picture under the drawing cannot be read: {0}")]
+    Backdrop(String),
+    /// The library that writes PDF refuses.
+    #[error("the PDF cannot be written: {0}")]
+    Pdf(String),
+}
 
 /// A page.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,0 +1,1 @@
+//! Pages in all three formats against each other and against independent viewers.
