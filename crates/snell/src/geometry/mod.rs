@@ -7,6 +7,7 @@
 mod blockers;
 mod placed;
 mod space;
+mod surfaces;
 #[cfg(test)]
 mod tests;
 
@@ -14,6 +15,7 @@ use snell_math::{Point3, Ray, Vector3};
 
 pub(crate) use placed::Placement;
 pub(crate) use space::{Attributes, NONE, ObjectPlace, ObjectSpace, Primitive, Space};
+pub use surfaces::{Form, WorldSurface};
 
 use crate::accel::Candidate;
 use crate::csg::{CsgHit, CsgScratch, CsgSolid};

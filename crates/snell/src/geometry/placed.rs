@@ -19,6 +19,11 @@ impl Placement {
         Self { outer_from_local, shrink: squares.sqrt() }
     }
 
+    /// The map itself.
+    pub fn outer_from_local(&self) -> &Transform {
+        &self.outer_from_local
+    }
+
     /// A ray in the local space; its parameter means the same.
     #[inline]
     pub fn to_local(&self, ray: &Ray) -> Ray {

@@ -17,6 +17,7 @@ use snell_scene::scene::Mesh;
 
 use super::SurfacePoint;
 use crate::accel::{BuildError, Bvh};
+pub use topology::{EdgeFaces, MeshEdge};
 use watertight::{Meeting, RaySpace};
 
 /// Triangles over shared vertices, ready to be met by rays. Front faces are counter-clockwise.
@@ -245,6 +246,29 @@ impl TriangleMesh {
     /// closed. An edge of a hole counts 1. Takes n log n time, and memory for the while.
     pub fn boundary_edges(&self) -> usize {
         topology::boundary_edges(&self.positions, &self.triangles)
+    }
+
+    /// All edges with the faces along them, corners of equal position being one. Takes n log n time.
+    pub fn edges(&self) -> Vec<MeshEdge> {
+        topology::edges(&self.positions, &self.triangles)
+    }
+
+    /// The corners of a triangle.
+    ///
+    /// # Panics
+    /// Where there is no such triangle.
+    #[inline]
+    pub fn triangle(&self, triangle: u32) -> [Point3; 3] {
+        self.corners(triangle).map(point)
+    }
+
+    /// The place of a vertex.
+    ///
+    /// # Panics
+    /// Where there is no such vertex.
+    #[inline]
+    pub fn vertex(&self, vertex: u32) -> Point3 {
+        point(self.positions[vertex as usize])
     }
 
     /// True where the mesh encloses something: every edge is matched, see [`TriangleMesh::boundary_edges`].

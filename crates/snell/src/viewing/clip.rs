@@ -80,8 +80,14 @@ pub struct Clipped {
 /// assert!((end.z() - 1.0).abs() < 1e-15);
 /// ```
 pub fn clip_segment(a: Homogeneous3, b: Homogeneous3) -> Option<Clipped> {
+    clip_segment_to(a, b, &Side::ALL)
+}
+
+/// As [`clip_segment`], to some sides alone, as of a volume that has no far plane. Left and right, or bottom and top, or near and
+/// far must be among them: only two opposite sides keep what is behind the eye out.
+pub fn clip_segment_to(a: Homogeneous3, b: Homogeneous3, sides: &[Side]) -> Option<Clipped> {
     let mut clipped = Clipped { from: 0.0, to: 1.0, entered: None, left: None };
-    for side in Side::ALL {
+    for &side in sides {
         let (start, end) = (side.distance(a), side.distance(b));
         if start.is_nan() || end.is_nan() || start < 0.0 && end < 0.0 {
             return None;
@@ -98,7 +104,7 @@ pub fn clip_segment(a: Homogeneous3, b: Homogeneous3) -> Option<Clipped> {
             }
         }
     }
-    // With all six sides, h is not negative inside; the tip of the cone, h = 0, is no point.
+    // Between opposite sides h is not negative; the tip of the cone, h = 0, is no point.
     let middle = a.lerp(b, 0.5 * (clipped.from + clipped.to));
     (clipped.from <= clipped.to && middle.h() > 0.0).then_some(clipped)
 }

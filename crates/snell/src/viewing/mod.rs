@@ -10,7 +10,7 @@ mod matrices;
 mod pipeline;
 mod rectangle;
 
-pub use clip::{Clipped, Side, clip_segment, outside};
+pub use clip::{Clipped, Side, clip_segment, clip_segment_to, outside};
 pub use matrices::{
     ViewVolume, canonical_from_pixel, canonical_from_volume, orthographic, orthographic_inverse, perspective,
     perspective_inverse, pixel_from_canonical, ray_view, ray_view_inverse, view, view_axes, view_inverse,
