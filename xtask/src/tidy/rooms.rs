@@ -73,6 +73,10 @@ const ROOMS: &[Room] = &[
             "compile",
         ],
     },
+    Room {
+        name: "drawing",
+        may_use: &["viewing", "vector", "plot", "shape", "outline", "camera", "geometry", "compile"],
+    },
     Room { name: "trace", may_use: &["optics", "statistics", "task", "observe", "geometry", "compile", "integrator"] },
     Room {
         name: "render",

@@ -231,3 +231,24 @@ pub struct CameraMark {
     /// Scene-linear.
     pub color: Rgb,
 }
+
+impl CameraMark {
+    /// A camera of a picture of that width / height, with its view volume between two planes, and nothing else.
+    pub fn new(camera: Camera, aspect: f64, near: f64, far: f64) -> Self {
+        Self {
+            name: None,
+            camera,
+            aspect,
+            near,
+            far,
+            labels: true,
+            axes: false,
+            gaze: false,
+            up: false,
+            frustum: true,
+            picture: false,
+            pixels: None,
+            color: Rgb::new(0.02, 0.08, 0.4),
+        }
+    }
+}

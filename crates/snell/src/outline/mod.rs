@@ -53,6 +53,11 @@ pub struct Feature {
 }
 
 impl Feature {
+    /// A curve that is no contour.
+    pub fn new(kind: FeatureKind, curve: Curve) -> Self {
+        Self { kind, curve, leaf: 0, facing: None }
+    }
+
     /// The outward unit normal of the body's surface at a point of a contour or a parameter line, in the caller's space; `None`
     /// for other kinds.
     pub fn outward(&self, point: Point3) -> Option<Vector3> {
@@ -87,7 +92,7 @@ pub struct OutlineOptions<'a> {
     pub parameter_lines: u32,
     /// How far a polyline's chord may be from the curve near a point, in units of length of the caller's space; about a twentieth
     /// of a pixel there.
-    pub tolerance: &'a dyn Fn(Point3) -> f64,
+    pub tolerance: &'a (dyn Fn(Point3) -> f64 + Sync),
 }
 
 impl std::fmt::Debug for OutlineOptions<'_> {
