@@ -7,6 +7,7 @@ mod builtin;
 mod check;
 mod console;
 mod diagnostics;
+mod draw;
 mod failure;
 mod interrupt;
 mod load;
@@ -17,6 +18,7 @@ mod render;
 mod scenes;
 mod settings;
 mod statistics;
+mod view;
 
 use std::process::ExitCode;
 
@@ -45,6 +47,8 @@ fn main() -> ExitCode {
 fn run(command: Command, watch: Stopwatch) -> Result<u8, Failure> {
     match command {
         Command::Render(arguments) => return render::run(&arguments, watch),
+        Command::Draw(arguments) => return draw::run(&arguments, watch),
+        Command::View(arguments) => return view::run(&arguments),
         Command::Check(arguments) => return check::run(&arguments),
         Command::Scenes(arguments) => return scenes::run(&arguments),
         Command::Schema => write_stdout(format!("{:#}\n", document::schema()).as_bytes())?,

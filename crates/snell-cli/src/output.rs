@@ -15,7 +15,7 @@ use crate::console::{quoted, reason, write_stdout};
 use crate::failure::Failure;
 
 /// What the picture's file calls its maker.
-const SOFTWARE: &str = concat!("Snell ", env!("CARGO_PKG_VERSION"));
+pub const SOFTWARE: &str = concat!("Snell ", env!("CARGO_PKG_VERSION"));
 
 /// The format of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,44 +103,12 @@ impl Target {
 
     /// Whether the file could be written, as far as can be known before.
     pub fn check(&self) -> Result<(), Failure> {
-        let Self::File(path, _) = self else { return Ok(()) };
-        let wrong = |problem: &str| Failure::input(cannot_write(path, problem));
-        if let Ok(metadata) = fs::metadata(path) {
-            if metadata.is_dir() {
-                return Err(wrong("it is a folder"));
-            }
-            if metadata.permissions().readonly() {
-                return Err(wrong("the file is there already and write-protected"));
-            }
-            if is_special(path) {
-                return Ok(());
-            }
-        }
-        let folder = folder_of(path);
-        let shown = quoted(&folder.to_string_lossy());
-        match fs::metadata(folder) {
-            Ok(metadata) if metadata.is_dir() => {}
-            Ok(_) => return Err(wrong(&format!("{shown} is not a folder"))),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                return Err(wrong(&format!("there is no folder {shown}")));
-            }
-            Err(error) => return Err(wrong(&reason(&error))),
-        }
-        // The only sure way to know whether a file can be made is to make one.
-        temporary_file(folder)
-            .map(drop)
-            .map_err(|error| wrong(&format!("no file can be made in the folder {shown}: {}", reason(&error))))
+        if let Self::File(path, _) = self { check_writable(path) } else { Ok(()) }
     }
 
     /// That the picture does not take the place of what the scene is made of.
     pub fn spares(&self, assets: &FileAssets) -> Result<(), Failure> {
-        match self {
-            Self::File(path, _) if assets.has_read(path) => {
-                let diagnostic = cannot_write(path, "the scene itself uses that file");
-                Err(Failure::input(diagnostic.help("choose another name with -o")))
-            }
-            _ => Ok(()),
-        }
+        if let Self::File(path, _) = self { spare_sources(path, assets) } else { Ok(()) }
     }
 
     /// Encodes and writes.
@@ -148,12 +116,53 @@ impl Target {
         match self {
             Self::Nowhere => Ok(()),
             Self::Stdout(format) => write_stdout(&encode(*format, rendering, settings)?),
-            Self::File(path, format) => {
-                let bytes = encode(*format, rendering, settings)?;
-                put_in_place(path, &bytes).map_err(|error| Failure::input(cannot_write(path, &reason(&error))))
-            }
+            Self::File(path, format) => write_file(path, &encode(*format, rendering, settings)?),
         }
     }
+}
+
+/// Whether a picture's file could be written, as far as can be known before.
+pub fn check_writable(path: &Path) -> Result<(), Failure> {
+    let wrong = |problem: &str| Failure::input(cannot_write(path, problem));
+    if let Ok(metadata) = fs::metadata(path) {
+        if metadata.is_dir() {
+            return Err(wrong("it is a folder"));
+        }
+        if metadata.permissions().readonly() {
+            return Err(wrong("the file is there already and write-protected"));
+        }
+        if is_special(path) {
+            return Ok(());
+        }
+    }
+    let folder = folder_of(path);
+    let shown = quoted(&folder.to_string_lossy());
+    match fs::metadata(folder) {
+        Ok(metadata) if metadata.is_dir() => {}
+        Ok(_) => return Err(wrong(&format!("{shown} is not a folder"))),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            return Err(wrong(&format!("there is no folder {shown}")));
+        }
+        Err(error) => return Err(wrong(&reason(&error))),
+    }
+    // The only sure way to know whether a file can be made is to make one.
+    temporary_file(folder)
+        .map(drop)
+        .map_err(|error| wrong(&format!("no file can be made in the folder {shown}: {}", reason(&error))))
+}
+
+/// That a picture does not take the place of what its scene is made of.
+pub fn spare_sources(path: &Path, assets: &FileAssets) -> Result<(), Failure> {
+    if assets.has_read(path) {
+        let diagnostic = cannot_write(path, "the scene itself uses that file");
+        return Err(Failure::input(diagnostic.help("choose another name with -o")));
+    }
+    Ok(())
+}
+
+/// Writes a picture's file as a whole or not at all.
+pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    put_in_place(path, bytes).map_err(|error| Failure::input(cannot_write(path, &reason(&error))))
 }
 
 fn cannot_write(path: &Path, problem: &str) -> Diagnostic {

@@ -19,7 +19,7 @@ use crate::output::Target;
 use crate::preview::{self, Kind};
 use crate::progress::RenderProgress;
 use crate::settings;
-use crate::statistics::{Report, Stopwatch, Times, advice};
+use crate::statistics::{Report, Stopwatch, Times, advice, seconds_text};
 
 /// Renders as the command line says, and returns the exit code.
 pub fn run(arguments: &RenderArguments, mut watch: Stopwatch) -> Result<u8, Failure> {
@@ -101,7 +101,7 @@ fn read(arguments: &RenderArguments, place: &Place, assets: &FileAssets) -> Resu
 }
 
 /// Compiles, and adds the engine's warnings to those of the reader.
-fn compile(scene: &Scene, told: &mut Diagnostics) -> Result<CompiledScene, Failure> {
+pub fn compile(scene: &Scene, told: &mut Diagnostics) -> Result<CompiledScene, Failure> {
     match CompiledScene::build(scene) {
         Ok(mut compiled) => {
             told.list.append(&mut compiled.warnings);
@@ -141,26 +141,5 @@ fn say_closing_line(
     say(format_args!("{what} ({width}x{height}, {}){end}", seconds_text(total)));
     if arguments.scene.is_none() && arguments.output.is_none() && rendering.complete {
         say(format_args!("This is the built-in scene {}; `snell scenes` lists the others.", builtin::DEFAULT));
-    }
-}
-
-/// Seconds in about three digits.
-fn seconds_text(duration: Duration) -> String {
-    match duration.as_secs_f64() {
-        seconds if seconds < 9.995 => format!("{seconds:.2} s"),
-        seconds if seconds < 99.95 => format!("{seconds:.1} s"),
-        seconds => format!("{seconds:.0} s"),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn seconds_are_short() {
-        for (seconds, text) in [(0.2149, "0.21 s"), (9.999, "10.0 s"), (12.34, "12.3 s"), (1234.5, "1234 s")] {
-            assert_eq!(seconds_text(Duration::from_secs_f64(seconds)), text);
-        }
     }
 }

@@ -11,7 +11,6 @@ const MOST_PIXELS: u64 = 1 << 28;
 
 /// Puts what the command line says into a scene's settings.
 pub fn apply(arguments: &RenderArguments, settings: &mut Settings) -> Result<(), Failure> {
-    (settings.width, settings.height) = size((settings.width, settings.height), (arguments.width, arguments.height));
     replace(&mut settings.depth, arguments.depth);
     replace(&mut settings.min_weight, arguments.min_weight);
     replace(&mut settings.antialiasing, arguments.aa);
@@ -19,6 +18,12 @@ pub fn apply(arguments: &RenderArguments, settings: &mut Settings) -> Result<(),
     replace(&mut settings.bands, arguments.bands);
     replace(&mut settings.tone, arguments.tone.map(Into::into));
     replace(&mut settings.exposure, arguments.exposure);
+    apply_size((arguments.width, arguments.height), settings)
+}
+
+/// Puts the size that the command line asks for into a scene's settings.
+pub fn apply_size(wanted: (Option<u32>, Option<u32>), settings: &mut Settings) -> Result<(), Failure> {
+    (settings.width, settings.height) = size((settings.width, settings.height), wanted);
     let pixels = u64::from(settings.width) * u64::from(settings.height);
     if pixels > MOST_PIXELS {
         let message = format!(

@@ -171,9 +171,25 @@ fn peak_bytes() -> Option<u64> {
     None
 }
 
+/// Seconds in about three digits.
+pub fn seconds_text(duration: Duration) -> String {
+    match duration.as_secs_f64() {
+        seconds if seconds < 9.995 => format!("{seconds:.2} s"),
+        seconds if seconds < 99.95 => format!("{seconds:.1} s"),
+        seconds => format!("{seconds:.0} s"),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn seconds_are_short() {
+        for (seconds, text) in [(0.2149, "0.21 s"), (9.999, "10.0 s"), (12.34, "12.3 s"), (1234.5, "1234 s")] {
+            assert_eq!(seconds_text(Duration::from_secs_f64(seconds)), text);
+        }
+    }
     use snell::math::Rgb;
     use snell::scene::scene::Settings;
 
