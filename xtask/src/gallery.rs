@@ -1,6 +1,7 @@
-//! `cargo xtask gallery`: renders the built-in scenes into `docs/gallery/` and writes the page that shows them.
+//! `cargo xtask gallery`: renders and draws the built-in scenes into `docs/gallery/` and writes the page that shows them.
 //!
-//! A caption is the comment that opens a scene file: its first line is the title, the rest says what the picture shows.
+//! A caption is the comment that opens a scene file: its first line is the title, the rest says what the picture shows. A scene
+//! without a light is a figure, which is drawn and not rendered.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,6 +12,9 @@ use crate::process;
 
 /// How a picture of the gallery is rendered: wide enough for a page, smoothed as the scene asks; pixels.
 const RENDER_OPTIONS: &[&str] = &["--width", "960"];
+
+/// Figures that `snell view` draws: both volumes side by side.
+const VIEWS: &[&str] = &["canonical-volume"];
 
 /// Pictures above this size do not belong into a repository; bytes.
 const LARGEST_PICTURE: u64 = 1 << 20;
@@ -38,21 +42,28 @@ pub fn run(arguments: Arguments) -> Outcome {
         let caption = Caption::of(&text).ok_or_else(|| {
             format!("{}: a scene starts with a comment: `# Title`, then what it shows", path.display())
         })?;
-        entries.push((name, caption));
+        let is_rendered = text.lines().any(|line| line.trim_end() == "[[light]]");
+        entries.push(Entry { name, caption, is_rendered });
     }
 
     fs::create_dir_all(&folder).map_err(|error| format!("cannot make {}: {error}", folder.display()))?;
-    for (name, _) in entries.iter().filter(|(name, _)| wanted.is_empty() || wanted.contains(name)) {
-        let picture = folder.join(format!("{name}.png"));
-        println!("{name}");
-        let mut command = process::program(&snell.to_string_lossy());
-        process::run(command.args(["render", name, "-o"]).arg(&picture).args(RENDER_OPTIONS))?;
-        let size = fs::metadata(&picture).map_err(|error| format!("{}: {error}", picture.display()))?.len();
-        if size > LARGEST_PICTURE {
-            return Err(format!(
-                "{}: {size} bytes are too many for a page; {LARGEST_PICTURE} at most",
-                picture.display()
-            ));
+    for entry in entries.iter().filter(|entry| wanted.is_empty() || wanted.contains(&entry.name)) {
+        println!("{}", entry.name);
+        for (words, ending) in entry.commands() {
+            let picture = folder.join(format!("{}.{ending}", entry.name));
+            let mut command = process::program(&snell.to_string_lossy());
+            command.args(&words).arg("-o").arg(&picture);
+            if ending == "png" {
+                command.args(RENDER_OPTIONS);
+            }
+            process::run(&mut command)?;
+            let size = fs::metadata(&picture).map_err(|error| format!("{}: {error}", picture.display()))?.len();
+            if size > LARGEST_PICTURE {
+                return Err(format!(
+                    "{}: {size} bytes are too many for a page; {LARGEST_PICTURE} at most",
+                    picture.display()
+                ));
+            }
         }
     }
     remove_pictures_of_no_scene(&folder, &entries)?;
@@ -78,16 +89,41 @@ fn find_scene(folder: &Path, name: &str) -> Option<PathBuf> {
     below.iter().filter(|path| path.is_dir()).find_map(|path| find_scene(path, name))
 }
 
-fn remove_pictures_of_no_scene(folder: &Path, entries: &[(String, Caption)]) -> Outcome {
+fn remove_pictures_of_no_scene(folder: &Path, entries: &[Entry]) -> Outcome {
     let files = fs::read_dir(folder).map_err(|error| format!("cannot read {}: {error}", folder.display()))?;
     for path in files.filter_map(|entry| Some(entry.ok()?.path())) {
-        let is_picture = path.extension().is_some_and(|extension| extension == "png");
-        let has_scene = path.file_stem().is_some_and(|stem| entries.iter().any(|(name, _)| stem == name.as_str()));
-        if is_picture && !has_scene {
+        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+        let is_made = path.file_stem().is_some_and(|stem| {
+            let of_entry = entries.iter().find(|entry| stem == entry.name.as_str());
+            of_entry.is_some_and(|entry| entry.commands().iter().any(|(_, made)| *made == ending))
+        });
+        if matches!(ending, "png" | "svg") && !is_made {
             fs::remove_file(&path).map_err(|error| format!("cannot remove {}: {error}", path.display()))?;
         }
     }
     Ok(())
+}
+
+/// A scene of the gallery.
+#[derive(Debug)]
+struct Entry {
+    name: String,
+    caption: Caption,
+    /// It has a light; else it is only drawn.
+    is_rendered: bool,
+}
+
+impl Entry {
+    /// The words after `snell` that make its pictures, with the ending of each.
+    fn commands(&self) -> Vec<(Vec<&str>, &'static str)> {
+        let drawn = if VIEWS.contains(&self.name.as_str()) {
+            vec!["view", &self.name, "--format", "svg"]
+        } else {
+            vec!["draw", &self.name]
+        };
+        let rendered = self.is_rendered.then(|| (vec!["render", self.name.as_str()], "png"));
+        rendered.into_iter().chain([(drawn, "svg")]).collect()
+    }
 }
 
 /// What a scene file says about itself.
@@ -120,17 +156,24 @@ impl Caption {
     }
 }
 
-fn page_text(entries: &[(String, Caption)]) -> String {
+fn page_text(entries: &[Entry]) -> String {
     let mut page =
         "# Gallery\n\nEvery picture is a scene that ships inside `snell`, and the command under it makes it. \
                     This page is written by `cargo xtask gallery`; change the scene, not the page.\n"
             .to_owned();
-    for (name, caption) in entries {
-        page += &format!("\n## {}\n\n![{}]({name}.png)\n\n", caption.title, caption.title);
-        for paragraph in &caption.text {
-            page += &format!("{paragraph}\n\n");
+    for entry in entries {
+        let Entry { name, caption, .. } = entry;
+        page += &format!("\n## {}\n", caption.title);
+        let mut lines = String::new();
+        for (words, ending) in entry.commands() {
+            let what = if ending == "svg" { ", drawn" } else { "" };
+            page += &format!("\n![{}{what}]({name}.{ending})\n", caption.title);
+            lines += &format!("snell {} -o {name}.{ending}\n", words.join(" "));
         }
-        page += &format!("```sh\nsnell render {name} -o {name}.png\n```\n");
+        for paragraph in &caption.text {
+            page += &format!("\n{paragraph}\n");
+        }
+        page += &format!("\n```sh\n{lines}```\n");
     }
     page
 }
@@ -156,11 +199,24 @@ mod tests {
 
     #[test]
     fn the_page_shows_each_picture_with_its_command() {
-        let caption = Caption { title: "A".to_owned(), text: vec!["b".to_owned()] };
-        let page = page_text(&[("one".to_owned(), caption)]);
-        for part in ["## A\n", "(one.png)", "\nb\n", "snell render one -o one.png"] {
-            assert!(page.contains(part), "{page}");
+        let entry = |name: &str, is_rendered| {
+            let caption = Caption { title: "A".to_owned(), text: vec!["b".to_owned()] };
+            Entry { name: name.to_owned(), caption, is_rendered }
+        };
+        let page = page_text(&[entry("one", true), entry("two", false), entry("canonical-volume", false)]);
+        let parts = [
+            "## A\n",
+            "(one.png)",
+            "(one.svg)",
+            "\nb\n",
+            "snell render one -o one.png\nsnell draw one -o one.svg\n",
+            "(two.svg)",
+            "snell view canonical-volume --format svg -o",
+        ];
+        for part in parts {
+            assert!(page.contains(part), "{part} in {page}");
         }
+        assert!(!page.contains("two.png"), "{page}");
     }
 
     #[test]

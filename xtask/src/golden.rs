@@ -13,7 +13,9 @@ pub fn run(mut arguments: Arguments) -> Outcome {
     let bless = arguments.flag("--bless");
     let filter = arguments.at_most_one_name()?;
     let mut command = process::cargo();
-    command.args(["test", "--package", "snell", "--test", "golden"]).args(&filter);
+    command
+        .args(["test", "--package", "snell", "--test", "golden", "--test", "golden_drawing", "--no-fail-fast"])
+        .args(&filter);
     if bless {
         command.env(BLESS, "1");
     }
