@@ -12,6 +12,7 @@ pub mod light;
 pub mod material;
 pub mod observe;
 pub mod optics;
+pub mod plot;
 pub mod render;
 pub mod shape;
 pub mod statistics;

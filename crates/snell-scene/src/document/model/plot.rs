@@ -220,7 +220,7 @@ pub struct PlotParametric {
 pub struct PlotData {
     /// The points [x, y].
     #[schemars(length(min = 1))]
-    pub points: Vec<[f64; 2]>,
+    pub points: Vec<[Located<Quantity>; 2]>,
     /// Joins the last point with the first.
     #[serde(default)]
     pub closed: bool,

@@ -104,7 +104,9 @@ impl Resolver<'_> {
             CurveKind::Parametric { x: x?, y: y?, from, to }
         } else {
             let model::PlotData { points, closed, line, marks } = curve.data.as_ref()?;
-            CurveKind::Data { points: points.clone(), closed: *closed, line: *line, marks: *marks }
+            let numbers = points.iter().map(|[x, y]| Some([self.quantity(x)?, self.quantity(y)?]));
+            let points = numbers.collect::<Option<Vec<[f64; 2]>>>()?;
+            CurveKind::Data { points, closed: *closed, line: *line, marks: *marks }
         };
         Some(scene::PlotCurve {
             kind,
