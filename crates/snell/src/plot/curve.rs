@@ -6,38 +6,15 @@ use super::Sheet;
 use super::pen::{self, ARROW, LETTERS, color, dot, filled, lines, polyline, stroke, text};
 use super::sample::sample;
 use crate::vector::Item;
-use crate::viewing::Rectangle;
+use crate::viewing::{Rectangle, Viewing2};
 
 /// Dashes and gaps, in widths of the line.
 const DASHES: [f64; 2] = [4.5, 3.5];
 
 impl Sheet<'_> {
     pub(super) fn curves(&self) -> Vec<Item> {
-        self.plot.curves.iter().flat_map(|curve| self.curve(curve)).collect()
-    }
-
-    /// A curve in world coordinates, in as many lines as it has without lifting the pen.
-    pub(super) fn world_lines(&self, curve: &PlotCurve) -> Vec<Vec<[f64; 2]>> {
-        let window = self.viewing.window();
-        match &curve.kind {
-            CurveKind::Function { y, from, to } => {
-                let (from, to) = (from.max(window.left), to.min(window.right));
-                if from >= to {
-                    return Vec::new();
-                }
-                sample(|x| [x, y.evaluate(x)], from, to, &self.viewing)
-            }
-            CurveKind::Parametric { x, y, from, to } => {
-                sample(|t| [x.evaluate(t), y.evaluate(t)], *from, *to, &self.viewing)
-            }
-            CurveKind::Data { points, closed, .. } => {
-                let mut line = points.clone();
-                if *closed {
-                    line.extend(points.first());
-                }
-                vec![line]
-            }
-        }
+        let curves = self.plot.curves.iter().zip(&self.lines);
+        curves.flat_map(|(curve, lines)| self.curve(curve, lines)).collect()
     }
 
     /// What is seen of lines, on the page.
@@ -64,10 +41,9 @@ impl Sheet<'_> {
         seen
     }
 
-    fn curve(&self, curve: &PlotCurve) -> Vec<Item> {
+    fn curve(&self, curve: &PlotCurve, world: &[Vec<[f64; 2]>]) -> Vec<Item> {
         let mut items = Vec::new();
         let ink = color(curve.color);
-        let world = self.world_lines(curve);
         if let Some(fill) = curve.fill {
             let areas = world.iter().filter_map(|line| self.area(curve, line));
             let areas: Vec<_> = areas.collect();
@@ -75,7 +51,7 @@ impl Sheet<'_> {
         }
         let is_line = !matches!(curve.kind, CurveKind::Data { line: false, .. });
         if is_line {
-            self.line(curve, self.clipped(&world), &mut items);
+            self.line(curve, self.clipped(world), &mut items);
         }
         if let CurveKind::Data { points, marks: true, .. } = &curve.kind {
             let window = self.viewing.window();
@@ -120,16 +96,52 @@ impl Sheet<'_> {
         polyline(&page, true)
     }
 
+    /// Where the label of a curve belongs: on what is seen of its lines, or at one of its points where it has no lines.
+    fn label_place(&self, curve: &PlotCurve, world: &[Vec<[f64; 2]>]) -> Option<[f64; 2]> {
+        if let CurveKind::Data { points, line, .. } = &curve.kind
+            && (!line || points.len() == 1)
+        {
+            let window = self.viewing.window();
+            let seen: Vec<_> = points.iter().filter(|point| window.contains(**point)).collect();
+            let last = seen.len().checked_sub(1)?;
+            return Some(self.viewing.point(*seen[(curve.label_at * last as f64).round() as usize]));
+        }
+        along(&self.clipped(world), curve.label_at)
+    }
+
     pub(super) fn curve_labels(&self) -> Vec<Item> {
         let mut items = Vec::new();
-        for curve in &self.plot.curves {
+        for (curve, lines) in self.plot.curves.iter().zip(&self.lines) {
             let Some(label) = &curve.label else { continue };
-            let seen = self.clipped(&self.world_lines(curve));
-            let Some([x, y]) = along(&seen, curve.label_at) else { continue };
+            let Some([x, y]) = self.label_place(curve, lines) else { continue };
             let at = [x + curve.offset[0], y - curve.offset[1]];
             items.push(text(label, at, LETTERS, color(curve.color), pen::anchor(curve.offset)));
         }
         items
+    }
+}
+
+/// A curve in world coordinates, in as many lines as it has without lifting the pen.
+pub(super) fn world_lines(curve: &PlotCurve, viewing: &Viewing2, evaluations: usize) -> Vec<Vec<[f64; 2]>> {
+    let window = viewing.window();
+    match &curve.kind {
+        CurveKind::Function { y, from, to } => {
+            let (from, to) = (from.max(window.left), to.min(window.right));
+            if from >= to {
+                return Vec::new();
+            }
+            sample(|x| [x, y.evaluate(x)], from, to, viewing, evaluations)
+        }
+        CurveKind::Parametric { x, y, from, to } => {
+            sample(|t| [x.evaluate(t), y.evaluate(t)], *from, *to, viewing, evaluations)
+        }
+        CurveKind::Data { points, closed, .. } => {
+            let mut line = points.clone();
+            if *closed {
+                line.extend(points.first());
+            }
+            vec![line]
+        }
     }
 }
 

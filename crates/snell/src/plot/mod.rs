@@ -24,16 +24,23 @@ const TITLE: f64 = 4.0;
 /// The colour of frames.
 const FRAME: [u8; 3] = [110; 3];
 
+/// How many points of all curves of a plot are computed at most, so that no formula takes forever.
+const MOST_EVALUATIONS: usize = 400_000;
+/// How many of each may be computed, whatever the number of curves.
+const LEAST_EVALUATIONS: usize = 4000;
+
 /// A plot and its place on the page.
 struct Sheet<'a> {
     plot: &'a Plot,
     viewing: Viewing2,
     /// What the window fills of the page: its left, right, bottom and top there, so that `bottom` is the larger number.
     place: Rectangle,
+    /// The lines of each curve, in world coordinates.
+    lines: Vec<Vec<Vec<[f64; 2]>>>,
 }
 
 /// A plot as it appears on a page of this size in millimetres: groups of lines, fills and texts, from the back to the front. They
-/// are named by the plot's name or title: "wave frame", "wave grid", "wave curves", "wave axes" and "wave labels"; those with
+/// are named by the plot's name or title: "wave grid", "wave curves", "wave frame", "wave axes" and "wave labels"; those with
 /// nothing in them are left out.
 ///
 /// Curves lie in the window, are true to 0.02 mm, and have gaps where functions have poles or no value.
@@ -59,12 +66,16 @@ pub fn plot_groups(plot: &Plot, page_width: f64, page_height: f64) -> Result<Vec
     let viewing = Viewing2::new(&sides(plot.window), &sides(plot.viewport), &device, fit)?;
     let [left, bottom] = viewing.point([plot.window.left, plot.window.bottom]);
     let [right, top] = viewing.point([plot.window.right, plot.window.top]);
-    let sheet = Sheet { plot, viewing, place: Rectangle { left, right, bottom, top } };
+    let place = Rectangle { left, right, bottom, top };
+    let evaluations = (MOST_EVALUATIONS / plot.curves.len().max(1)).max(LEAST_EVALUATIONS);
+    let lines = plot.curves.iter().map(|curve| curve::world_lines(curve, &viewing, evaluations)).collect();
+    let sheet = Sheet { plot, viewing, place, lines };
     let name = plot.name.as_ref().or(plot.title.as_ref()).map_or("plot", |name| name);
     let parts = [
         ("grid", sheet.grid()),
-        ("frame", sheet.frame()),
         ("curves", sheet.curves()),
+        // Over the curves, which reach into it with half of their width.
+        ("frame", sheet.frame()),
         ("axes", sheet.axes()),
         ("labels", sheet.labels()),
     ];

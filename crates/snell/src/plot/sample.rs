@@ -15,8 +15,6 @@ const INTERVALS: u32 = 300;
 const HALVINGS: u32 = 12;
 /// Jumps of less than fifty times this are drawn as if they were none, mm.
 const SMALLEST_JUMP: f64 = 0.001;
-/// The most points of a curve that are computed.
-const MOST_EVALUATIONS: u32 = 200_000;
 
 /// A point of a curve and its parameter; `None` where it has no value.
 #[derive(Clone, Copy, Debug)]
@@ -30,13 +28,22 @@ pub(super) struct Sampler<'a, F> {
     point: F,
     viewing: &'a Viewing2,
     window: Rectangle,
-    evaluations: u32,
+    evaluations: usize,
+    most: usize,
     lines: Vec<Vec<[f64; 2]>>,
 }
 
-/// The curve t ↦ `point(t)` as lines in world coordinates, each in one stroke. Parts outside of the window may be coarse.
-pub(super) fn sample<F: Fn(f64) -> [f64; 2]>(point: F, from: f64, to: f64, viewing: &Viewing2) -> Vec<Vec<[f64; 2]>> {
-    let mut sampler = Sampler { point, viewing, window: viewing.window(), evaluations: 0, lines: vec![Vec::new()] };
+/// The curve t ↦ `point(t)` as lines in world coordinates, each in one stroke. Parts outside of the window may be coarse; so
+/// may be all once `most` points have been computed.
+pub(super) fn sample<F: Fn(f64) -> [f64; 2]>(
+    point: F,
+    from: f64,
+    to: f64,
+    viewing: &Viewing2,
+    most: usize,
+) -> Vec<Vec<[f64; 2]>> {
+    let mut sampler =
+        Sampler { point, viewing, window: viewing.window(), evaluations: 0, most, lines: vec![Vec::new()] };
     let mut before = sampler.at(from);
     sampler.emit(before);
     for i in 1..=INTERVALS {
@@ -97,7 +104,7 @@ impl<F: Fn(f64) -> [f64; 2]> Sampler<'_, F> {
             }
             return;
         };
-        if a.t >= b.t || self.outside(pa, pb) || self.evaluations > MOST_EVALUATIONS {
+        if a.t >= b.t || self.outside(pa, pb) || self.evaluations > self.most {
             return self.emit(b);
         }
         let middle = self.at(0.5 * (a.t + b.t));

@@ -121,7 +121,7 @@ fn lines_are_true_to_the_curve() {
     for text in formulas {
         let viewing = sheet(Rectangle::new(-1.0, 2.0, -1.5, 1.5));
         let formula = Expression::parse(text, Some("x")).unwrap();
-        let lines = sample(|x| [x, formula.evaluate(x)], -1.0, 2.0, &viewing);
+        let lines = sample(|x| [x, formula.evaluate(x)], -1.0, 2.0, &viewing, 200_000);
         let found = worst(text, -1.0, 2.0, &viewing, &lines);
         assert!(found <= 0.02, "{text}: {found} mm");
         let count: usize = lines.iter().map(Vec::len).sum();
@@ -198,6 +198,14 @@ fn wild_functions_take_bounded_work() {
                 .all(|p| (-1e-9..=160.0 + 1e-9).contains(&p[0]) && (-1e-9..=100.0 + 1e-9).contains(&p[1]))
         );
     }
+}
+
+#[test]
+fn many_wild_curves_share_the_work() {
+    let wild = "[[plot.curve]]\nfunction = { y = \"tan(1e6*x)\" }\nlabel = \"*t*\"\n".repeat(200);
+    let groups = groups(&format!("[[plot]]\nwindow = [-1, 1, -1, 1]\n{wild}"));
+    let count: usize = paths(part(&groups, "curves")).iter().flat_map(|path| points(path)).map(|line| line.len()).sum();
+    assert!(count < 2_000_000, "{count}");
 }
 
 #[test]

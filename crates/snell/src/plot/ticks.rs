@@ -79,7 +79,8 @@ fn multiples(step: Round, from: f64, to: f64) -> Vec<Tick> {
     // What differs from the border by rounding only is on it.
     let slack = 1e-9;
     let (first, last) = ((from / unit - slack).ceil(), (to / unit + slack).floor());
-    if !(last - first <= MOST) || first.abs().max(last.abs()) > 1e15 {
+    // Beyond 10^15, neighbouring numbers are too far apart to have ticks of this distance.
+    if !(first - last).is_finite() || last - first > MOST || first.abs().max(last.abs()) > 1e15 {
         return Vec::new();
     }
     let mut found = Vec::new();
