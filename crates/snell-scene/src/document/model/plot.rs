@@ -76,7 +76,7 @@ pub struct Axis {
     pub label: Option<String>,
     /// Where it has ticks: a word, or a list of places.
     #[schemars(extend("default" = "auto"))]
-    pub ticks: Either<TicksWord, Vec<Either<Tick, Located<Quantity>>>>,
+    pub ticks: Either<TicksWord, Vec<Located<Either<Tick, Quantity>>>>,
     /// The distance from tick to tick, in place of `ticks`.
     pub every: Option<Located<Quantity>>,
     /// Ticks are at multiples of π, and labelled so.
@@ -220,7 +220,7 @@ pub struct PlotParametric {
 pub struct PlotData {
     /// The points [x, y].
     #[schemars(length(min = 1))]
-    pub points: Vec<[f64; 2]>,
+    pub points: Vec<[Located<Quantity>; 2]>,
     /// Joins the last point with the first.
     #[serde(default)]
     pub closed: bool,

@@ -98,7 +98,10 @@ impl Resolver<'_> {
         let project_to = line.project_to.as_ref().and_then(|name| {
             let found = names.get(&*name.value).copied();
             if found.is_none() {
-                let help = match did_you_mean(&name.value, names.keys().copied()) {
+                // With very many mistakes of this kind, comparing all names with all takes too long.
+                let candidates =
+                    names.keys().copied().take(if self.diagnostics.list.len() < 100 { names.len() } else { 0 });
+                let help = match did_you_mean(&name.value, candidates) {
                     Some(near) => format!("did you mean {near:?}?"),
                     None if names.is_empty() => "define it as `[[drawing.camera]]` with this `name`".to_owned(),
                     None => {

@@ -75,10 +75,13 @@ impl Resolver<'_> {
         scene::Axis { show: axis.show, label: axis.label.clone(), ticks, pi: axis.pi, at, arrow: axis.arrow }
     }
 
-    fn tick(&mut self, tick: &Either<model::Tick, Located<Quantity>>) -> Option<(f64, Option<String>)> {
-        match tick {
+    fn tick(&mut self, tick: &Located<Either<model::Tick, Quantity>>) -> Option<(f64, Option<String>)> {
+        match &tick.value {
             Either::A(tick) => Some((self.quantity(&tick.at)?, tick.label.clone())),
-            Either::B(at) => Some((self.quantity(at)?, None)),
+            Either::B(at) => {
+                let at = Located { value: at.clone(), span: tick.span.clone() };
+                Some((self.quantity(&at)?, None))
+            }
         }
     }
 
@@ -101,7 +104,9 @@ impl Resolver<'_> {
             CurveKind::Parametric { x: x?, y: y?, from, to }
         } else {
             let model::PlotData { points, closed, line, marks } = curve.data.as_ref()?;
-            CurveKind::Data { points: points.clone(), closed: *closed, line: *line, marks: *marks }
+            let numbers = points.iter().map(|[x, y]| Some([self.quantity(x)?, self.quantity(y)?]));
+            let points = numbers.collect::<Option<Vec<[f64; 2]>>>()?;
+            CurveKind::Data { points, closed: *closed, line: *line, marks: *marks }
         };
         Some(scene::PlotCurve {
             kind,

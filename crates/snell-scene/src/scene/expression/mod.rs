@@ -58,13 +58,16 @@ enum Step {
     Variable,
     Negate,
     /// Of the last number.
-    Function(fn(f64) -> f64),
+    Function(OfOne),
     /// Of the last two numbers.
-    Operation(fn(f64, f64) -> f64),
+    Operation(OfTwo),
 }
 
+type OfOne = fn(f64) -> f64;
+type OfTwo = fn(f64, f64) -> f64;
+
 /// The functions of one number, by name.
-const FUNCTIONS: [(&str, fn(f64) -> f64); 20] = [
+const FUNCTIONS: [(&str, OfOne); 20] = [
     ("sin", portable::sin),
     ("cos", portable::cos),
     ("tan", portable::tan),
@@ -88,7 +91,7 @@ const FUNCTIONS: [(&str, fn(f64) -> f64); 20] = [
 ];
 
 /// The functions of two numbers, by name.
-const FUNCTIONS_OF_TWO: [(&str, fn(f64, f64) -> f64); 4] = [
+const FUNCTIONS_OF_TWO: [(&str, OfTwo); 4] = [
     ("min", f64::min),
     ("max", f64::max),
     ("atan2", portable::atan2),
