@@ -147,7 +147,12 @@ fn as_text(view: &View<'_>) -> String {
         "nothing to do: the projection is parallel"
     };
     matrix(&mut text, "M_p", meaning, &pipeline.perspective);
-    matrix(&mut text, "M_o", "the box [l, r] x [b, t] x [f, n] to pixels, centres at whole numbers, y up", &pipeline.orthographic());
+    matrix(
+        &mut text,
+        "M_o",
+        "the box [l, r] x [b, t] x [f, n] to pixels, centres at whole numbers, y up",
+        &pipeline.orthographic(),
+    );
     matrix(&mut text, "M", "M_o M_p M_v: world to pixels, to be divided by h", &pipeline.all());
 
     for (index, point) in view.points.iter().enumerate() {
@@ -208,7 +213,8 @@ fn verdict(point: &PointStages) -> String {
         return "inside of the view volume".to_owned();
     }
     if point.clip.h() <= 0.0 {
-        return if point.clip.h() == 0.0 { "in the eye's plane: clipped" } else { "behind the eye: clipped" }.to_owned();
+        return if point.clip.h() == 0.0 { "in the eye's plane: clipped" } else { "behind the eye: clipped" }
+            .to_owned();
     }
     let sides: Vec<&str> = point.outside.iter().map(|side| side.name()).collect();
     format!("outside, beyond the {} side{}: clipped", sides.join(" and the "), if sides.len() == 1 { "" } else { "s" })
@@ -299,7 +305,9 @@ mod tests {
 
     #[test]
     fn numbers_are_short_and_say_nothing_of_rounding() {
-        for (x, text) in [(0.5, "0.5"), (-1.0, "-1"), (1e-17, "0"), (319.5, "319.5"), (1.5e-7, "1.50000e-7"), (2e9, "2.00000e9")] {
+        for (x, text) in
+            [(0.5, "0.5"), (-1.0, "-1"), (1e-17, "0"), (319.5, "319.5"), (1.5e-7, "1.50000e-7"), (2e9, "2.00000e9")]
+        {
             assert_eq!(number(x), text);
         }
     }

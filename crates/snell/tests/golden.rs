@@ -25,9 +25,7 @@ fn main() {
     let arguments = Arguments::from_args();
     let scenes = rendered_scenes();
     let mut trials: Vec<Trial> = scenes.iter().map(|name| of_scene(name.clone())).collect();
-    trials.push(Trial::test("every-golden-has-its-scene", || {
-        orphans(&rendered_scenes(), &stems(&goldens(), "png"))
-    }));
+    trials.push(Trial::test("every-golden-has-its-scene", || orphans(&rendered_scenes(), &stems(&goldens(), "png"))));
     trials.push(Trial::test("a-golden-without-scene-is-told", || {
         let names = |names: &[&str]| names.iter().map(ToString::to_string).collect();
         let failed = orphans(&names(&["a", "b"]), &names(&["b", "c"])).err().ok_or("an orphan was not told")?;

@@ -69,7 +69,11 @@ impl Crossings {
             let (y0, y1) = (row as f64 * self.cell, (row as f64 + 1.0) * self.cell);
             let x_at = |y: f64| {
                 let height = high[1] - low[1];
-                if height > 0.0 { low[0] + (high[0] - low[0]) * ((y - low[1]) / height).clamp(0.0, 1.0) } else { low[0] }
+                if height > 0.0 {
+                    low[0] + (high[0] - low[0]) * ((y - low[1]) / height).clamp(0.0, 1.0)
+                } else {
+                    low[0]
+                }
             };
             // A level segment has both ends in its one row.
             let (xa, xb) = if high[1] - low[1] > 0.0 { (x_at(y0), x_at(y1)) } else { (low[0], high[0]) };
@@ -150,7 +154,10 @@ mod tests {
 
     #[test]
     fn level_upright_and_broken_pieces() {
-        let grid = Crossings::new([100.0, 60.0], [[[10.0, 8.0], [90.0, 8.0]], [[40.0, 0.0], [40.0, 60.0]], [[f64::NAN, 0.0], [9.0, 9.0]]]);
+        let grid = Crossings::new(
+            [100.0, 60.0],
+            [[[10.0, 8.0], [90.0, 8.0]], [[40.0, 0.0], [40.0, 60.0]], [[f64::NAN, 0.0], [9.0, 9.0]]],
+        );
         let mut shares = Vec::new();
         grid.along([20.0, 0.0], [20.0, 16.0], &mut shares);
         assert_eq!(sorted(std::mem::take(&mut shares)), [0.5]);

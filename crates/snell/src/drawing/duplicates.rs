@@ -58,7 +58,8 @@ fn place([a, b]: &[[f64; 2]; 2]) -> Option<(i64, i64)> {
     if !(length > 1e-9 && length.is_finite()) {
         return None;
     }
-    let (dx, dy) = if dy < 0.0 || dy == 0.0 && dx < 0.0 { (-dx / length, -dy / length) } else { (dx / length, dy / length) };
+    let (dx, dy) =
+        if dy < 0.0 || dy == 0.0 && dx < 0.0 { (-dx / length, -dy / length) } else { (dx / length, dy / length) };
     let angle = snell_math::portable::atan2(dy, dx) / std::f64::consts::PI * ANGLES as f64;
     let offset = a[1] * dx - a[0] * dy;
     Some(((angle.floor() as i64).clamp(0, ANGLES - 1), (offset / 4.0).floor() as i64))

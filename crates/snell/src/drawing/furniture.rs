@@ -67,7 +67,10 @@ pub fn groups(
     if drawing.frame {
         let inset = 0.25 * drawing.line_width;
         let corners = Rectangle { left: left + inset, right: right - inset, bottom: bottom - inset, top: top + inset };
-        groups.push(Group { name: "frame".to_owned(), items: vec![Item::Path(frame(&corners, 0.5 * drawing.line_width))] });
+        groups.push(Group {
+            name: "frame".to_owned(),
+            items: vec![Item::Path(frame(&corners, 0.5 * drawing.line_width))],
+        });
     }
     if drawing.scale_bar {
         groups.extend(scale_bar(screen, bounds, page_from_raster, [left, bottom]));
@@ -118,7 +121,15 @@ fn scale_bar(
 
 /// A number to three digits.
 fn rounded(x: f64) -> String {
-    let decimals = if x >= 100.0 { 0 } else if x >= 10.0 { 1 } else if x >= 1.0 { 2 } else { 4 };
+    let decimals = if x >= 100.0 {
+        0
+    } else if x >= 10.0 {
+        1
+    } else if x >= 1.0 {
+        2
+    } else {
+        4
+    };
     let text = format!("{x:.decimals$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
@@ -129,7 +140,9 @@ mod tests {
 
     #[test]
     fn round_lengths_are_one_two_or_five() {
-        for (length, expected) in [(1.0, 1.0), (1.99, 1.0), (2.0, 2.0), (4.9, 2.0), (7.0, 5.0), (10.0, 10.0), (0.03, 0.02), (1e3, 1e3)] {
+        for (length, expected) in
+            [(1.0, 1.0), (1.99, 1.0), (2.0, 2.0), (4.9, 2.0), (7.0, 5.0), (10.0, 10.0), (0.03, 0.02), (1e3, 1e3)]
+        {
             let round = round_length(length);
             assert!((round / expected - 1.0).abs() < 1e-12, "{length}: {round}");
         }

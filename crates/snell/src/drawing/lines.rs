@@ -65,8 +65,12 @@ pub fn gather(geometry: &Geometry, screen: &Screen<'_>, options: &LineOptions) -
     // A camera with a near plane of its own looks into things that the plane cuts open.
     let from_outside = screen.camera.planes()[0] == 0.0;
     let of_surface = |surface: &WorldSurface<'_>| -> Vec<Line> {
-        let line = |feature, surely_hidden| {
-            Line { feature, object: surface.object, material: surface.material, mark: None, surely_hidden }
+        let line = |feature, surely_hidden| Line {
+            feature,
+            object: surface.object,
+            material: surface.material,
+            mark: None,
+            surely_hidden,
         };
         match surface.form {
             Form::Mesh(mesh, _) => {
@@ -112,7 +116,8 @@ fn body<'s>(surface: &'s WorldSurface<'_>) -> Option<Body<'s>> {
 
 /// The pairs of shapes and solids whose boxes overlap: found by a sweep along x.
 fn meeting_pairs(surfaces: &[WorldSurface<'_>]) -> Vec<(usize, usize)> {
-    let mut order: Vec<usize> = (0..surfaces.len()).filter(|&index| !matches!(surfaces[index].form, Form::Mesh(..))).collect();
+    let mut order: Vec<usize> =
+        (0..surfaces.len()).filter(|&index| !matches!(surfaces[index].form, Form::Mesh(..))).collect();
     order.sort_by(|&a, &b| surfaces[a].bounds.min.x().total_cmp(&surfaces[b].bounds.min.x()).then(a.cmp(&b)));
     let mut pairs = Vec::new();
     let mut open: Vec<usize> = Vec::new();
@@ -159,7 +164,9 @@ pub fn see(lines: Vec<Line>, geometry: &Geometry, screen: &Screen<'_>) -> Vec<Se
             let mut parts: Vec<Part> = Vec::new();
             for track in &tracks {
                 match (line.surely_hidden, track.first(), track.last()) {
-                    (true, Some(a), Some(b)) => parts.push(Part { from: a.t, to: b.t, visible: false }),
+                    (true, Some(a), Some(b)) => {
+                        parts.push(Part { from: a.t, to: b.t, visible: false, is_outline: false })
+                    }
                     _ => parts.extend(visibility.parts(&line.feature, track, scratch)),
                 }
             }

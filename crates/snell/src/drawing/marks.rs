@@ -123,7 +123,8 @@ pub fn all(scene: &CompiledScene, settings: &DrawingSettings, bounds: &Bounds3) 
     }
     for grid in &drawing.grids {
         let name = grid.label.as_deref().unwrap_or("grid");
-        let mark = ruled(Mark::new(name, code(grid.color), grid.width.unwrap_or(thin)), grid.corner, grid.edges, grid.count);
+        let mark =
+            ruled(Mark::new(name, code(grid.color), grid.width.unwrap_or(thin)), grid.corner, grid.edges, grid.count);
         let far = grid.corner + grid.edges[0] + grid.edges[1];
         marks.push(mark.hidden_by_things(grid.hidden).label(grid.label.as_deref(), far, [1.2, 1.2]));
     }
@@ -136,11 +137,13 @@ pub fn all(scene: &CompiledScene, settings: &DrawingSettings, bounds: &Bounds3) 
     for line in &drawing.lines {
         let (Some(&first), Some(&last)) = (line.points.first(), line.points.last()) else { continue };
         let color = code(line.color);
-        let mut mark = Mark::new(line.label.as_deref().unwrap_or("line"), color, line.width.unwrap_or(drawing.line_width));
+        let mut mark =
+            Mark::new(line.label.as_deref().unwrap_or("line"), color, line.width.unwrap_or(drawing.line_width));
         (mark.arrow, mark.dashed, mark.can_be_hidden) = (line.arrow, line.dashed, line.hidden);
         let mark = mark.chain(&line.points);
         let steps = (0..=line.steps).map(|step| f64::from(step) / f64::from(line.steps.max(1)));
-        let places: Vec<Point3> = if line.steps > 0 { steps.map(|s| along(&line.points, s)).collect() } else { Vec::new() };
+        let places: Vec<Point3> =
+            if line.steps > 0 { steps.map(|s| along(&line.points, s)).collect() } else { Vec::new() };
         let mut mark = mark.label(line.label.as_deref(), along(&line.points, line.label_at), line.offset);
         mark.dots.extend(places.iter().map(|p| (*p, 3.0 * mark.width)));
         marks.push(mark);
@@ -151,10 +154,13 @@ pub fn all(scene: &CompiledScene, settings: &DrawingSettings, bounds: &Bounds3) 
         mark.dots.extend(places.iter().filter_map(|p| window.image(*p)).map(|p| (p, 3.0 * mark.width)));
         marks.push(mark);
         let ends: Vec<Point3> = if places.is_empty() { vec![first, last] } else { places };
-        let rays = ends.into_iter().fold(Mark::new("projecting rays", [130; 3], thin).dashed(), |mark, end| match window.eye {
-            Some(eye) => mark.line(eye, end),
-            None => window.image(end).into_iter().fold(mark, |mark, image| mark.line(image, end)),
-        });
+        let rays =
+            ends.into_iter().fold(Mark::new("projecting rays", [130; 3], thin).dashed(), |mark, end| {
+                match window.eye {
+                    Some(eye) => mark.line(eye, end),
+                    None => window.image(end).into_iter().fold(mark, |mark, image| mark.line(image, end)),
+                }
+            });
         marks.push(rays);
     }
     for point in &drawing.points {
@@ -213,7 +219,8 @@ impl DrawnCamera {
     fn new(mark: &CameraMark) -> Result<Self, ViewingError> {
         // As many pixels as it is to show, or a fine raster of the same proportions.
         let [width, height] = mark.pixels.unwrap_or_else(|| {
-            let (w, h) = if mark.aspect >= 1.0 { (1200.0, 1200.0 / mark.aspect) } else { (1200.0 * mark.aspect, 1200.0) };
+            let (w, h) =
+                if mark.aspect >= 1.0 { (1200.0, 1200.0 / mark.aspect) } else { (1200.0 * mark.aspect, 1200.0) };
             [w, h].map(|pixels| pixels.round().clamp(1.0, 65_536.0) as u32)
         });
         let camera = Camera::new(&mark.camera, width, height, PixelGrid::Centers)?;
@@ -286,7 +293,7 @@ impl DrawnCamera {
         if mark.gaze {
             let tip = eye - w * (1.5 * length);
             let arrow = Mark::new(format!("{name} gaze"), color, 1.3 * width).arrow(eye, tip);
-            marks.push(arrow.label(labels("*g*"), tip, [1.0, 1.0]));
+            marks.push(arrow.label(labels("*g*"), tip, [-0.8, 1.6]));
         }
         let mut dot = Mark::new(format!("{name} eye"), color, width);
         dot.dots.push((eye, 1.6));
@@ -313,12 +320,7 @@ impl DrawnCamera {
 }
 
 /// The marks as groups on the page: those that can be hidden by what was seen of them.
-pub fn groups(
-    marks: &[Mark],
-    seen: &[SeenLine],
-    screen: &Screen<'_>,
-    page_from_raster: &RectangleMap,
-) -> Vec<Group> {
+pub fn groups(marks: &[Mark], seen: &[SeenLine], screen: &Screen<'_>, page_from_raster: &RectangleMap) -> Vec<Group> {
     let place = |p: Point3| {
         let clip = screen.clip(p.into());
         let is_before_the_eye = crate::viewing::outside(clip).all(|side| side == crate::viewing::Side::Far);
@@ -351,7 +353,12 @@ pub fn groups(
             && let Some([tail, tip]) = mark.features.last().and_then(|feature| ends(&feature.curve))
             && let (Some(from), Some(to)) = (place(tail), place(tip))
         {
-            items.push(Item::Path(vector::arrow_head(to, [to[0] - from[0], to[1] - from[1]], 6.0 * mark.width.max(0.3), mark.color)));
+            items.push(Item::Path(vector::arrow_head(
+                to,
+                [to[0] - from[0], to[1] - from[1]],
+                6.0 * mark.width.max(0.3),
+                mark.color,
+            )));
         }
         for &(at, diameter) in &mark.dots {
             if let Some(center) = place(at) {
@@ -359,17 +366,36 @@ pub fn groups(
                 items.push(Item::Path(Path { subpaths: vec![disk], stroke: None, fill: Some(mark.color) }));
             }
         }
+        Group { name: mark.name.clone(), items }
+    };
+    let mut groups: Vec<Group> = marks.iter().enumerate().map(group).collect();
+    // After all lines, so that none runs through them.
+    let mut labels = Group { name: "labels".to_owned(), items: Vec::new() };
+    for mark in marks {
         for label in &mark.labels {
             let Some([x, y]) = place(label.at) else { continue };
             let [dx, dy] = label.offset;
-            let horizontal = if dx > 0.3 { Horizontal::Left } else if dx < -0.3 { Horizontal::Right } else { Horizontal::Center };
-            let vertical = if dy > 0.3 { Vertical::Baseline } else if dy < -0.3 { Vertical::Top } else { Vertical::Middle };
+            let horizontal = if dx > 0.3 {
+                Horizontal::Left
+            } else if dx < -0.3 {
+                Horizontal::Right
+            } else {
+                Horizontal::Center
+            };
+            let vertical = if dy > 0.3 {
+                Vertical::Baseline
+            } else if dy < -0.3 {
+                Vertical::Top
+            } else {
+                Vertical::Middle
+            };
             let text = Text { at: [x + dx, y - dy], horizontal, vertical, ..label_text(&label.markup, mark.color) };
-            items.push(Item::Text(text));
+            labels.items.push(Item::Text(text));
         }
-        Group { name: mark.name.clone(), items }
-    };
-    marks.iter().enumerate().map(group).filter(|group| !group.items.is_empty()).collect()
+    }
+    groups.push(labels);
+    groups.retain(|group| !group.items.is_empty());
+    groups
 }
 
 /// The ends of a straight line that has two.

@@ -94,12 +94,8 @@ pub fn draw(scene: &CompiledScene, settings: &DrawingSettings) -> Result<Page, V
     let title_height = furniture::title_height(drawing);
     page.height += title_height;
     let device = Device { width: page.width, height: picture_height, y_down: true };
-    let raster = Rectangle {
-        left: 0.0,
-        right: f64::from(settings.width),
-        bottom: f64::from(settings.height),
-        top: 0.0,
-    };
+    let raster =
+        Rectangle { left: 0.0, right: f64::from(settings.width), bottom: f64::from(settings.height), top: 0.0 };
     let scene::Extent { left, right, bottom, top } = drawing.viewport;
     let viewing = Viewing2::new(&raster, &Rectangle::new(left, right, bottom, top), &device, Fit::Keep)?;
     let place = |p: [f64; 2]| {

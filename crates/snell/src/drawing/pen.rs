@@ -21,9 +21,12 @@ pub fn write(screen: &Screen<'_>, curve: &Curve, from: f64, to: f64) -> Subpath 
         Curve::Segment { .. } => Subpath { start: start.at, pieces: vec![Piece::Line { to: end.at }], closed: false },
         Curve::Polyline(_) => simplified(&screen.track(curve, [from, to])),
         Curve::Conic { center, cos, sin, .. } => {
-            let arc = ellipse(screen, [*center, *cos, *sin]).and_then(|ellipse| arc(screen, curve, &ellipse, start, end));
+            let arc =
+                ellipse(screen, [*center, *cos, *sin]).and_then(|ellipse| arc(screen, curve, &ellipse, start, end));
             match arc {
-                Some(arc) => Subpath { start: arc.point(arc.start), closed: arc.is_full(), pieces: vec![Piece::Arc(arc)] },
+                Some(arc) => {
+                    Subpath { start: arc.point(arc.start), closed: arc.is_full(), pieces: vec![Piece::Arc(arc)] }
+                }
                 None => fitted(screen, curve, start, end),
             }
         }
@@ -129,9 +132,8 @@ fn fit(screen: &Screen<'_>, curve: &Curve, a: Sample, b: Sample, depth: u32, pie
     let off = [0.25, 0.5, 0.75].into_iter().map(|share| {
         let (s, r) = (share, 1.0 - share);
         let weights = [r * r * r, 3.0 * r * r * s, 3.0 * r * s * s, s * s * s];
-        let on_piece = [0, 1].map(|k| {
-            weights[0] * a.at[k] + weights[1] * first[k] + weights[2] * second[k] + weights[3] * b.at[k]
-        });
+        let on_piece = [0, 1]
+            .map(|k| weights[0] * a.at[k] + weights[1] * first[k] + weights[2] * second[k] + weights[3] * b.at[k]);
         let on_curve = screen.sample(curve, a.t + span * share).at;
         (on_piece[0] - on_curve[0]).abs().max((on_piece[1] - on_curve[1]).abs())
     });

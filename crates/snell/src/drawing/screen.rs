@@ -8,7 +8,7 @@ use snell_math::{Bounds3, Homogeneous3, Matrix4, Point3, portable};
 
 use crate::camera::{Camera, Projection};
 use crate::outline::Curve;
-use crate::viewing::{Pipeline, RectangleMap, Side, ViewingError, Rectangle, clip_segment_to};
+use crate::viewing::{Pipeline, Rectangle, RectangleMap, Side, ViewingError, clip_segment_to};
 
 /// How far the picture of a curve may be from the straight pieces that it is followed by, in pixels.
 const FLATNESS: f64 = 0.02;

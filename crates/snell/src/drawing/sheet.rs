@@ -8,6 +8,7 @@ use super::duplicates::uncovered;
 use super::lines::{Line, SeenLine};
 use super::pen;
 use super::screen::Screen;
+use super::visibility::Part;
 use crate::outline::{Curve, FeatureKind};
 use crate::vector::{self, Arc, Group, Item, Path, Piece, Stroke, Subpath};
 use crate::viewing::RectangleMap;
@@ -32,7 +33,7 @@ pub struct Style {
 
 /// Colours that can be told from each other, also by those who see fewer: after Okabe and Ito, darkened for lines on white.
 const PALETTE: [[u8; 3]; 8] = [
-    [20, 20, 20],
+    [0, 0, 0],
     [0, 92, 152],
     [196, 72, 0],
     [0, 126, 92],
@@ -64,8 +65,8 @@ impl Weight {
     fn of(kind: FeatureKind) -> Self {
         match kind {
             FeatureKind::Parameter => Self::Parameter,
-            FeatureKind::Crease => Self::Crease,
-            FeatureKind::Boundary | FeatureKind::Contour | FeatureKind::Horizon | FeatureKind::Intersection => Self::Outline,
+            FeatureKind::Crease | FeatureKind::Intersection => Self::Crease,
+            FeatureKind::Boundary | FeatureKind::Contour | FeatureKind::Horizon => Self::Outline,
         }
     }
 
@@ -105,7 +106,7 @@ pub fn groups(
     for line in seen.iter().filter(|seen| seen.line.mark.is_none()) {
         for part in &line.parts {
             if part.visible || style.hidden != HiddenLines::Removed {
-                write_part(line, part.from, part.to, part.visible, screen, style, &mut strokes);
+                write_part(line, part, screen, style, &mut strokes);
             }
         }
     }
@@ -150,20 +151,23 @@ fn line_of(subpath: &Subpath) -> Option<[[f64; 2]; 2]> {
 
 fn write_part(
     seen: &SeenLine,
-    from: f64,
-    to: f64,
-    visible: bool,
+    part: &Part,
     screen: &Screen<'_>,
     style: &Style,
     strokes: &mut Vec<(u32, Pen, Subpath)>,
 ) {
     let Line { feature, object, material, .. } = &seen.line;
+    let Part { from, to, visible, is_outline } = *part;
     let color = match style.stroke {
         StrokeBy::Uniform | StrokeBy::Depth => PALETTE[0],
         StrokeBy::Object => PALETTE[*object as usize % PALETTE.len()],
         StrokeBy::Material => PALETTE[*material as usize % PALETTE.len()],
     };
-    let weight = if visible { Weight::of(feature.kind) } else { Weight::Hidden };
+    let weight = match visible {
+        false => Weight::Hidden,
+        true if is_outline => Weight::Outline,
+        true => Weight::of(feature.kind),
+    };
     let mut put = |from: f64, to: f64, depth: usize| {
         strokes.push((*object, Pen { weight, color, depth }, pen::write(screen, &feature.curve, from, to)));
     };
@@ -211,7 +215,9 @@ pub fn on_page(subpath: &Subpath, page_from_raster: &RectangleMap) -> Subpath {
     let scale = page_from_raster.scale()[0].abs();
     let pieces = subpath.pieces.iter().map(|piece| match *piece {
         Piece::Line { to } => Piece::Line { to: point(to) },
-        Piece::Cubic { first, second, to } => Piece::Cubic { first: point(first), second: point(second), to: point(to) },
+        Piece::Cubic { first, second, to } => {
+            Piece::Cubic { first: point(first), second: point(second), to: point(to) }
+        }
         Piece::Arc(arc) => Piece::Arc(Arc { center: point(arc.center), radii: arc.radii.map(|r| r * scale), ..arc }),
     });
     Subpath { start: point(subpath.start), pieces: pieces.collect(), closed: subpath.closed }

@@ -132,7 +132,8 @@ fn draw_panel(
     let center = all.iter().fold(Vector3::ZERO, |sum, p| sum + p.to_vector()) * (1.0 / all.len() as f64);
     let center = Point3::ORIGIN + center;
     let [x, y] = [portable::radians(38.0), portable::radians(24.0)];
-    let toward = Vector3::new(portable::sin(x) * portable::cos(y), portable::sin(y), portable::cos(x) * portable::cos(y));
+    let toward =
+        Vector3::new(portable::sin(x) * portable::cos(y), portable::sin(y), portable::cos(x) * portable::cos(y));
     let raster = Rectangle { left: 0.0, right: 1000.0, bottom: 850.0, top: 0.0 };
     let size = all.iter().map(|p| p.distance(center)).fold(0.0, f64::max);
     let looking = |width: f64, center: Point3| {
@@ -165,16 +166,33 @@ fn draw_panel(
     let mut volume = Group { name: format!("{}: volume", panel.title), items: Vec::new() };
     // Corner bits are x, y, z; z = 1 is the near side.
     let edges = |keep: &dyn Fn(usize, usize) -> bool| -> Vec<Subpath> {
-        let pairs = (0..8_usize).flat_map(|a| (0..3).map(move |bit| (a, a | 1 << bit))).filter(|(a, b)| a != b && keep(*a, *b));
+        let pairs =
+            (0..8_usize).flat_map(|a| (0..3).map(move |bit| (a, a | 1 << bit))).filter(|(a, b)| a != b && keep(*a, *b));
         pairs.map(|(a, b)| line(corners[a], corners[b])).collect()
     };
     let is_near = |a: usize, b: usize| a & b & 4 != 0;
-    volume.items.push(Item::Path(Path { subpaths: edges(&|a, b| !is_near(a, b)), stroke: stroke([32, 72, 168], 0.25, &[]), fill: None }));
-    volume.items.push(Item::Path(Path { subpaths: edges(&is_near), stroke: stroke([32, 72, 168], 0.5, &[]), fill: None }));
+    volume.items.push(Item::Path(Path {
+        subpaths: edges(&|a, b| !is_near(a, b)),
+        stroke: stroke([32, 72, 168], 0.25, &[]),
+        fill: None,
+    }));
+    volume.items.push(Item::Path(Path {
+        subpaths: edges(&is_near),
+        stroke: stroke([32, 72, 168], 0.5, &[]),
+        fill: None,
+    }));
     if let Some(eye) = eye {
         let rays = [4, 5, 6, 7].map(|index| line(eye, corners[index]));
-        volume.items.push(Item::Path(Path { subpaths: rays.to_vec(), stroke: stroke([32, 72, 168], 0.2, &[1.2, 1.0]), fill: None }));
-        volume.items.push(Item::Path(Path { subpaths: vec![Subpath::ellipse(on(eye), [0.8; 2], 0.0)], stroke: None, fill: Some([32, 72, 168]) }));
+        volume.items.push(Item::Path(Path {
+            subpaths: rays.to_vec(),
+            stroke: stroke([32, 72, 168], 0.2, &[1.2, 1.0]),
+            fill: None,
+        }));
+        volume.items.push(Item::Path(Path {
+            subpaths: vec![Subpath::ellipse(on(eye), [0.8; 2], 0.0)],
+            stroke: None,
+            fill: Some([32, 72, 168]),
+        }));
     }
     page.groups.push(volume);
 

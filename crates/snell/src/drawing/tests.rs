@@ -181,22 +181,48 @@ fn shapes() -> Vec<(&'static str, Shape)> {
     vec![
         ("ball", ball([0.0, 1.0, 0.0], 1.0)),
         ("box", Shape::Box { min: [-1.0, 0.0, -1.0].into(), max: [0.6, 1.5, 0.8].into() }),
-        ("cylinder", Shape::Cylinder { base: [0.0, 0.0, 0.0].into(), top: [0.3, 2.0, 0.4].into(), radius: 0.8, capped: true }),
-        ("tube", Shape::Cylinder { base: [-1.0, 0.5, 0.0].into(), top: [1.0, 0.6, 1.0].into(), radius: 0.6, capped: false }),
+        (
+            "cylinder",
+            Shape::Cylinder { base: [0.0, 0.0, 0.0].into(), top: [0.3, 2.0, 0.4].into(), radius: 0.8, capped: true },
+        ),
+        (
+            "tube",
+            Shape::Cylinder { base: [-1.0, 0.5, 0.0].into(), top: [1.0, 0.6, 1.0].into(), radius: 0.6, capped: false },
+        ),
         (
             "cone",
-            Shape::Cone { base: [0.0; 3].into(), base_radius: 1.2, top: [0.0, 2.0, 0.0].into(), top_radius: 0.0, capped: true },
+            Shape::Cone {
+                base: [0.0; 3].into(),
+                base_radius: 1.2,
+                top: [0.0, 2.0, 0.0].into(),
+                top_radius: 0.0,
+                capped: true,
+            },
         ),
         (
             "frustum",
-            Shape::Cone { base: [0.0; 3].into(), base_radius: 0.4, top: [0.0, 1.5, 0.5].into(), top_radius: 1.0, capped: true },
+            Shape::Cone {
+                base: [0.0; 3].into(),
+                base_radius: 0.4,
+                top: [0.0, 1.5, 0.5].into(),
+                top_radius: 1.0,
+                capped: true,
+            },
         ),
         (
             "torus",
-            Shape::Torus { center: [0.0, 0.8, 0.0].into(), axis: Vector3::new(0.2, 1.0, 0.3).normalize(), major_radius: 1.2, minor_radius: 0.4 },
+            Shape::Torus {
+                center: [0.0, 0.8, 0.0].into(),
+                axis: Vector3::new(0.2, 1.0, 0.3).normalize(),
+                major_radius: 1.2,
+                minor_radius: 0.4,
+            },
         ),
         ("disk", Shape::Disk { center: [0.0, 0.5, 0.0].into(), normal: Vector3::Y, radius: 1.5, inner_radius: 0.5 }),
-        ("rectangle", Shape::Rectangle { corner: [-1.0, 0.0, 0.0].into(), edges: [Vector3::X * 2.0, Vector3::Y * 1.5] }),
+        (
+            "rectangle",
+            Shape::Rectangle { corner: [-1.0, 0.0, 0.0].into(), edges: [Vector3::X * 2.0, Vector3::Y * 1.5] },
+        ),
     ]
 }
 
@@ -244,7 +270,8 @@ fn a_ball_is_one_ellipse() {
     let svg = encode_svg(&page).expect("an SVG");
     assert_eq!((svg.matches("<ellipse").count(), svg.contains("id=\"ball\"")), (1, true), "{svg}");
     // A part of it behind another one is an arc of the same ellipse.
-    let two = drawn(&scene(vec![object("ball", ball([0.7, 0.2, 1.0], 1.0)), object("small", ball([0.7, 0.9, 2.4], 0.5))]));
+    let two =
+        drawn(&scene(vec![object("ball", ball([0.7, 0.2, 1.0], 1.0)), object("small", ball([1.6, 0.6, 2.4], 0.5))]));
     let arcs: Vec<Piece> = pieces(&two);
     let Some(Piece::Arc(part)) = arcs.iter().find(|piece| matches!(piece, Piece::Arc(arc) if !arc.is_full())) else {
         panic!("{arcs:?}")
@@ -254,7 +281,8 @@ fn a_ball_is_one_ellipse() {
 
 #[test]
 fn a_box_shows_nine_edges_and_hides_three() {
-    let mut scene = scene(vec![object("box", Shape::Box { min: [-1.0, 0.0, -1.0].into(), max: [1.0, 1.5, 1.0].into() })]);
+    let mut scene =
+        scene(vec![object("box", Shape::Box { min: [-1.0, 0.0, -1.0].into(), max: [1.0, 1.5, 1.0].into() })]);
     let straight = |page: &Page| pieces(page).into_iter().filter(|piece| matches!(piece, Piece::Line { .. })).count();
     assert_eq!(straight(&drawn(&scene)), 9);
     scene.drawing.hidden = HiddenLines::Dashed;

@@ -21,6 +21,10 @@ const BESIDE: f64 = 0.01;
 const BEFORE: f64 = 1e-7;
 /// How much nearer in pixels where the curve is known by points of it alone, and chords between them lie a little inside.
 const BEFORE_CHORD: f64 = 0.5;
+/// How far beside an edge one looks for what is behind it, in pixels.
+const LOOK_BESIDE: f64 = 0.75;
+/// How much farther than the edge that must be, in pixels there: a surface seen at an angle is farther too.
+const BEHIND: f64 = 12.0;
 
 /// A part of a curve that is seen as a whole, or hidden as a whole: from one parameter to another.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,6 +35,8 @@ pub struct Part {
     pub to: f64,
     /// Whether it is seen.
     pub visible: bool,
+    /// Whether something ends there, so that beside it one sees what is behind: of an edge, that it is a part of the outline.
+    pub is_outline: bool,
 }
 
 /// Asks the rays.
@@ -67,7 +73,7 @@ impl Visibility<'_> {
         }
         let Some(&(_, start)) = probes.first() else { return Vec::new() };
         let break_parameters: Vec<f64> = breaks.iter().map(|length| route.parameter(*length)).collect();
-        let mut parts = vec![Part { from: first.t, to: last.t, visible: start }];
+        let mut parts = vec![Part { from: first.t, to: last.t, visible: start, is_outline: false }];
         for pair in probes.windows(2) {
             let [(before, was), (after, is)] = *pair else { continue };
             if was == is {
@@ -77,7 +83,10 @@ impl Visibility<'_> {
             if let Some(part) = parts.last_mut() {
                 part.to = at;
             }
-            parts.push(Part { from: at, to: last.t, visible: is });
+            parts.push(Part { from: at, to: last.t, visible: is, is_outline: false });
+        }
+        for part in parts.iter_mut().filter(|part| part.visible && feature.kind == FeatureKind::Crease) {
+            part.is_outline = self.is_outline(feature, 0.5 * (part.from + part.to), scratch);
         }
         parts
     }
@@ -165,6 +174,25 @@ impl Visibility<'_> {
             _ => 0.0,
         };
         !self.geometry.is_blocked(&ray, distance - (BEFORE * distance + margin), scratch)
+    }
+
+    /// Whether on one side of an edge one sees past it.
+    fn is_outline(&self, feature: &Feature, t: f64, scratch: &mut QueryScratch) -> bool {
+        let Ok(point) = feature.curve.point(t).homogenize() else { return true };
+        let [start, end] = feature.curve.domain();
+        let step = 1e-4 * (end - start);
+        let (a, b) = (self.screen.sample(&feature.curve, t - step).at, self.screen.sample(&feature.curve, t + step).at);
+        let length = distance(a, b);
+        if length.is_nan() || length <= 0.0 {
+            return false;
+        }
+        let across = [(a[1] - b[1]) / length * LOOK_BESIDE, (b[0] - a[0]) / length * LOOK_BESIDE];
+        let [x, y] = self.screen.sample(&feature.curve, t).at;
+        [1.0, -1.0].into_iter().any(|side| {
+            let ray = self.screen.camera.generate_ray(x + side * across[0], y + side * across[1]);
+            let limit = (point - ray.origin).dot(ray.direction) + BEHIND * self.screen.pixel_length(point);
+            self.geometry.intersect(&ray, limit, scratch).is_none()
+        })
     }
 
     /// Whether nothing at all is seen in a direction: for a plane's horizon, just beside it, on that side where the plane is not.

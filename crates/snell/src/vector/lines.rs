@@ -165,9 +165,8 @@ pub fn arrow_head(tip: [f64; 2], direction: [f64; 2], size: f64, color: [u8; 3])
         return Path::default();
     }
     let (x, y) = (direction[0] / length, direction[1] / length);
-    let at = |along: f64, across: f64| {
-        [tip[0] + size * (along * x - across * y), tip[1] + size * (along * y + across * x)]
-    };
+    let at =
+        |along: f64, across: f64| [tip[0] + size * (along * x - across * y), tip[1] + size * (along * y + across * x)];
     // A little hollow at the back, as they are printed.
     let mut head = Subpath::polyline(&[tip, at(-1.0, 0.34), at(-0.8, 0.0), at(-1.0, -0.34)]);
     head.closed = true;

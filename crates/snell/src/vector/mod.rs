@@ -7,9 +7,9 @@ mod lines;
 mod pdf;
 mod raster;
 mod svg;
-mod text;
 #[cfg(test)]
 mod tests;
+mod text;
 
 use std::f64::consts::TAU;
 

@@ -79,14 +79,16 @@ fn draw_path(surface: &mut Surface<'_>, path: &Path) {
         opacity: NormalizedF32::ONE,
         rule: FillRule::NonZero,
     }));
-    surface.set_stroke(path.stroke.as_ref().map(|stroke| Stroke {
-        paint: paint(stroke.color),
-        width: f(stroke.width),
-        line_cap: LineCap::Round,
-        line_join: LineJoin::Round,
-        dash: (!stroke.dashes.is_empty())
-            .then(|| StrokeDash { array: stroke.dashes.iter().map(|dash| f(*dash)).collect(), offset: 0.0 }),
-        ..Stroke::default()
+    surface.set_stroke(path.stroke.as_ref().map(|stroke| {
+        Stroke {
+            paint: paint(stroke.color),
+            width: f(stroke.width),
+            line_cap: LineCap::Round,
+            line_join: LineJoin::Round,
+            dash: (!stroke.dashes.is_empty())
+                .then(|| StrokeDash { array: stroke.dashes.iter().map(|dash| f(*dash)).collect(), offset: 0.0 }),
+            ..Stroke::default()
+        }
     }));
     surface.draw_path(&built);
 }

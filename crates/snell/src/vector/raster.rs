@@ -2,7 +2,8 @@
 
 use snell_image::{DisplayImage, Limits, decode_display};
 use tiny_skia::{
-    Color, FillRule, FilterQuality, IntSize, LineCap, LineJoin, Paint, PathBuilder, Pixmap, PixmapPaint, StrokeDash, Transform,
+    Color, FillRule, FilterQuality, IntSize, LineCap, LineJoin, Paint, PathBuilder, Pixmap, PixmapPaint, StrokeDash,
+    Transform,
 };
 
 use super::text::outlines;
@@ -37,7 +38,8 @@ pub fn rasterize(page: &Page, width: u32) -> Result<DisplayImage, VectorError> {
     }
     // On white paper nothing is left transparent, so the codes are those of the colours.
     let codes: Vec<[u8; 3]> = pixmap.pixels().iter().map(|p| [p.red(), p.green(), p.blue()]).collect();
-    DisplayImage::from_codes(width, height as u32, codes).ok_or(VectorError::Page { width: page.width, height: page.height })
+    DisplayImage::from_codes(width, height as u32, codes)
+        .ok_or(VectorError::Page { width: page.width, height: page.height })
 }
 
 fn draw_path(pixmap: &mut Pixmap, path: &Path, scale: f64) {
@@ -82,8 +84,8 @@ fn draw_path(pixmap: &mut Pixmap, path: &Path, scale: f64) {
 }
 
 fn draw_backdrop(pixmap: &mut Pixmap, backdrop: &Backdrop, scale: f64) -> Result<(), VectorError> {
-    let picture = decode_display(&backdrop.png, &Limits::default())
-        .map_err(|error| VectorError::Backdrop(error.to_string()))?;
+    let picture =
+        decode_display(&backdrop.png, &Limits::default()).map_err(|error| VectorError::Backdrop(error.to_string()))?;
     let (width, height) = picture.size();
     let mut bytes = Vec::with_capacity(width as usize * height as usize * 4);
     for y in 0..height {

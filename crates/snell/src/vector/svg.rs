@@ -87,7 +87,10 @@ fn write_path(svg: &mut String, path: &Path) {
         put(&mut attributes, format_args!(" fill=\"{}\"", color(fill)));
     }
     if let Some(stroke) = &path.stroke {
-        put(&mut attributes, format_args!(" stroke=\"{}\" stroke-width=\"{}\"", color(stroke.color), number(stroke.width)));
+        put(
+            &mut attributes,
+            format_args!(" stroke=\"{}\" stroke-width=\"{}\"", color(stroke.color), number(stroke.width)),
+        );
         if !stroke.dashes.is_empty() {
             let dashes: Vec<String> = stroke.dashes.iter().map(|dash| number(*dash)).collect();
             put(&mut attributes, format_args!(" stroke-dasharray=\"{}\"", dashes.join(" ")));

@@ -300,8 +300,12 @@ mod tests {
         let [left, right, ..] = extent(&text(Horizontal::Right, Vertical::Top, 0.0));
         assert!(right <= 10.0 && left > 2.0);
         // A quarter turn counter-clockwise: it runs upwards.
-        let [left, right, top, bottom] = extent(&text(Horizontal::Left, Vertical::Baseline, std::f64::consts::FRAC_PI_2));
-        assert!(bottom <= 20.0 && top > 11.0 && top < 14.0 && right <= 10.1 && left < 4.0, "{left} {right} {top} {bottom}");
+        let [left, right, top, bottom] =
+            extent(&text(Horizontal::Left, Vertical::Baseline, std::f64::consts::FRAC_PI_2));
+        assert!(
+            bottom <= 20.0 && top > 11.0 && top < 14.0 && right <= 10.1 && left < 4.0,
+            "{left} {right} {top} {bottom}"
+        );
     }
 
     #[test]
