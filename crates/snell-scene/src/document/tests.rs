@@ -72,10 +72,21 @@ fn keys_are_unique_and_settable() {
 }
 
 #[test]
+fn the_reference_names_every_function_of_formulas() {
+    let reference = reference();
+    let list = reference.split("the functions ").nth(1).unwrap().split(", with angles").next().unwrap();
+    let named: Vec<&str> = list.split([',', ' ']).filter(|word| !word.is_empty() && *word != "and").collect();
+    assert_eq!(named, crate::scene::Expression::function_names().collect::<Vec<_>>());
+}
+
+#[test]
 fn very_many_mistakes_are_told_in_part_and_in_time() {
     let many = |n: usize, line: &dyn Fn(usize) -> String| (0..n).map(line).collect::<String>();
     let long = "x".repeat(1 << 20);
     let texts = [
+        many(20_000, &|i| format!("[[drawing.camera]]\nname = \"c{i}\"\nview = {{}}\n"))
+            + &many(20_000, &|_| "[[drawing.line]]\npoints = [[0, 0, 0], [1, 0, 0]]\nproject_to = \"d\"\n".to_owned()),
+        many(20_000, &|_| "[[plot]]\nwindow = [0, \"cosh\", 0, \"1/0\"]\n".to_owned()),
         "[camera]\n".to_owned() + &many(50_000, &|i| format!("fovv{i} = 1\n")),
         many(20_000, &|i| format!("[[object]]\nsphere = {{}}\nmaterial = \"m{i}\"\n[material.n{i}]\n")),
         many(20_000, &|_| "[[object]]\nsphere = {}\nscale = 0\n".to_owned()),

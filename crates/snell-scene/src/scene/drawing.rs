@@ -210,7 +210,7 @@ pub struct CameraMark {
     pub camera: Camera,
     /// Width / height of its window.
     pub aspect: f64,
-    /// n: the z of the window in eye space, negative.
+    /// n: the z of the window in eye space; negative for a perspective camera.
     pub near: f64,
     /// f: the z of the far plane in eye space, below `near` and finite.
     pub far: f64,

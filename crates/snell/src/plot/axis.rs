@@ -95,7 +95,7 @@ impl Sheet<'_> {
 
     /// How far above the window the name of the y axis stands, mm.
     pub(super) fn name_above(&self) -> f64 {
-        if self.plot.y.arrow { BEYOND + 1.2 } else { 1.8 }
+        if self.plot.y.arrow { BEYOND + 1.2 } else { 3.0 }
     }
 
     fn axis(&self, along: usize, axis: &Axis, items: &mut Vec<Item>) {

@@ -307,6 +307,17 @@ fn points_of(path: &Path) -> Vec<[f64; 2]> {
     points(path).concat()
 }
 
+/// What the property tells: lines that are not clipped lead out.
+#[test]
+fn lines_that_are_not_clipped_are_noticed() {
+    let plot = plot("[[plot]]\nwindow = [0, 1, 0, 1]\n[[plot.curve]]\ndata = { points = [[0.5, 0.5], [2, 0.5]] }\n");
+    let viewing = sheet(sides(plot.window));
+    let snell_scene::scene::CurveKind::Data { points, .. } = &plot.curves[0].kind else { panic!() };
+    assert!(points.iter().map(|p| viewing.point(*p)).any(|p| p[0] > 160.0 + 1e-9));
+    let groups = plot_groups(&plot, 160.0, 100.0).unwrap();
+    assert_eq!(curve(&groups), [[[80.0, 50.0], [160.0, 50.0]]]);
+}
+
 #[test]
 fn a_label_of_a_curve_is_on_what_is_seen_of_it() {
     let text = "[[plot]]\nwindow = [0, 1, 0, 1]\n[[plot.curve]]\nfunction = { y = \"2*x\" }\nlabel = \"double\"\nlabel_at = 1\noffset = [0, 0]\n";

@@ -132,11 +132,11 @@ impl Default for GroundGrid {
     }
 }
 
-/// A point that is drawn as a dot. In labels, `*letters*` are italic, `_x` or `_{several}` is lowered, `^x` or `^{several}` raised.
+/// A point that is drawn as a dot.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PointMark {
-    /// What it is called.
+    /// What it is called, with the markup of labels.
     pub label: Option<String>,
     /// Where it is.
     #[schemars(extend("x-unit" = "world units"))]
@@ -163,7 +163,7 @@ pub struct PointMark {
 #[serde(deny_unknown_fields)]
 #[schemars(extend("x-example" = "[[drawing.camera]]\nname = \"first\"\nview = { eye = [3, 1, 4] }\n\n[[drawing.line]]\nlabel = \"*ab*\"\npoints = [[-1, 0, 0], [1, 1, 0]]\nproject_to = \"first\"\n"))]
 pub struct LineMark {
-    /// What it is called.
+    /// What it is called, with the markup of labels.
     pub label: Option<String>,
     /// Its corners.
     #[schemars(length(min = 2), extend("x-unit" = "world units"))]
@@ -205,7 +205,7 @@ pub struct LineMark {
 #[serde(deny_unknown_fields)]
 #[schemars(extend("x-example" = "[[drawing.grid]]\ncorner = [-2, 0, 0]\nedges = [[4, 0, 0], [0, 3, 0]]\ncount = [8, 6]\n"))]
 pub struct GridMark {
-    /// What it is called.
+    /// What it is called, with the markup of labels.
     pub label: Option<String>,
     /// The corner at which it begins.
     #[schemars(extend("x-unit" = "world units"))]

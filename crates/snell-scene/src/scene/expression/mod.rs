@@ -117,6 +117,11 @@ impl Expression {
         Ok(Self { text: text.to_owned(), variable: variable.map(str::to_owned), program })
     }
 
+    /// The names of all functions that formulas know.
+    pub fn function_names() -> impl Iterator<Item = &'static str> {
+        FUNCTIONS.iter().map(|(name, _)| *name).chain(FUNCTIONS_OF_TWO.iter().map(|(name, _)| *name))
+    }
+
     /// The formula as it was written.
     pub fn text(&self) -> &str {
         &self.text

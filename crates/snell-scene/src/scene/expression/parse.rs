@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{CONSTANTS, ExpressionError, FUNCTIONS, FUNCTIONS_OF_TWO, STACK, Step};
+use super::{CONSTANTS, Expression, ExpressionError, FUNCTIONS, FUNCTIONS_OF_TWO, STACK, Step};
 use crate::diagnostic::did_you_mean;
 
 /// The longest formula, in bytes.
@@ -219,7 +219,7 @@ impl<'a> Parser<'a> {
         if let Some((_, number)) = CONSTANTS.iter().find(|(constant, _)| *constant == name) {
             return self.push(Step::Number(*number));
         }
-        if function_names().any(|function| function == name) {
+        if Expression::function_names().any(|function| function == name) {
             let found =
                 error(format!("the function `{name}` has nothing to be taken of"), range, "expected `(` after this");
             return Err(with_help(found, format!("write `{name}({})`", self.variable.unwrap_or("1"))));
@@ -245,7 +245,7 @@ impl<'a> Parser<'a> {
                 return Err(self.unexpected_rest());
             }
             let found = error(format!("there is no function `{name}`"), range, "unknown function");
-            let names: Vec<&str> = function_names().collect();
+            let names: Vec<&str> = Expression::function_names().collect();
             return Err(match did_you_mean(name, names.iter().copied()) {
                 Some(near) => with_help(found, format!("did you mean `{near}`?")),
                 None => with_help(found, format!("the functions are {}", names.join(", "))),
@@ -268,10 +268,6 @@ impl<'a> Parser<'a> {
         self.close(open)?;
         self.push(step)
     }
-}
-
-fn function_names() -> impl Iterator<Item = &'static str> {
-    FUNCTIONS.iter().map(|(name, _)| *name).chain(FUNCTIONS_OF_TWO.iter().map(|(name, _)| *name))
 }
 
 /// Squares and cubes are multiplied out, so that they are exact where they can be.
