@@ -58,8 +58,8 @@ const COMMANDS: &[Command] = &[
     },
     Command {
         name: "bench",
-        usage: "[--runs N] [NAME...]",
-        summary: "measure whole pictures against POV-Ray, in alternating runs",
+        usage: "[--runs N] [--drawings] [NAME...]",
+        summary: "measure whole pictures against POV-Ray, in alternating runs; or line drawings",
         run: bench::run,
     },
     Command {

@@ -5,6 +5,7 @@
 //! is CPU seconds (user + system) of the process as the operating system counted them, not wall time: POV-Ray waits
 //! half a second at its start that would flatter us. Medians and ratios are quoted, with the spread beside them.
 
+mod drawings;
 mod measure;
 mod report;
 mod sphereflake;
@@ -64,6 +65,7 @@ const CASES: &[Case] = &[
 /// Runs the command line `cargo xtask bench ...`.
 pub fn run(mut arguments: Arguments) -> Outcome {
     let runs = arguments.option("--runs")?.unwrap_or(RUNS).max(1);
+    let drawings = arguments.flag("--drawings");
     let wanted = arguments.names()?;
     if let Some(unknown) = wanted.iter().find(|name| !CASES.iter().any(|case| case.name == name.as_str())) {
         let all: Vec<&str> = CASES.iter().map(|case| case.name).collect();
@@ -71,6 +73,9 @@ pub fn run(mut arguments: Arguments) -> Outcome {
     }
     let scratch = process::target().join("bench");
     std::fs::create_dir_all(&scratch).map_err(|error| format!("cannot make {}: {error}", scratch.display()))?;
+    if drawings {
+        return drawings::run(runs, &scratch);
+    }
     let povray = povray_version();
     if povray.is_none() {
         println!("POV-Ray is not installed, so there is nothing to compare with (`apt-get install povray`).");

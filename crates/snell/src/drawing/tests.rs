@@ -1,7 +1,12 @@
 //! Drawings against renderings of the same scenes, and against what is known of simple ones.
 
+use std::path::Path;
+use std::sync::Arc;
+
 use snell_math::{Point3, Transform, Vector3, portable};
-use snell_scene::scene::{Camera as CameraDescription, Frame, HiddenLines, Object, Scene, Shape};
+use snell_scene::assets::{AssetError, Assets};
+use snell_scene::document::read_scene;
+use snell_scene::scene::{Camera as CameraDescription, Frame, HiddenLines, Mesh, Object, Scene, Shape};
 
 use super::{DrawingSettings, draw, lines, seen_lines};
 use crate::camera::Camera;
@@ -260,6 +265,69 @@ fn parallel_views_and_windows_beside_the_middle_agree_too() {
     parallel.camera.frame =
         Frame::OrthographicWindow { left: -3.0, right: 3.0, bottom: -2.0, top: 2.0, near: -2.0, far: -30.0 };
     check("near and far", &parallel);
+}
+
+/// The repository's files.
+struct Repository;
+
+impl Assets for Repository {
+    fn read(&self, resolved: &str) -> Result<Arc<[u8]>, AssetError> {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(resolved);
+        std::fs::read(path).map(Into::into).map_err(|_| AssetError::NotFound)
+    }
+}
+
+#[test]
+fn every_rendered_scene_of_the_gallery_agrees_with_its_drawing() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    let entries = std::fs::read_dir(folder).expect("the scenes");
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.expect("a file").file_name().into_string().expect("a name")).collect();
+    names.retain(|name| name.ends_with(".toml"));
+    names.sort();
+    let mut checked = 0;
+    for name in names {
+        let path = format!("scenes/{name}");
+        let text = Repository.read(&path).expect("it is there");
+        let (scene, _) = read_scene(&path, &text, &Repository, &[]);
+        let mut scene = scene.expect("it has no mistakes");
+        if scene.lights.is_empty() {
+            continue;
+        }
+        let height = 400.0 * f64::from(scene.settings.height) / f64::from(scene.settings.width);
+        (scene.settings.width, scene.settings.height) = (400, height as u32);
+        check(&name, &scene);
+        checked += 1;
+    }
+    assert!(checked >= 15, "{checked} scenes");
+}
+
+#[test]
+fn a_mesh_of_many_triangles_agrees_with_its_drawing() {
+    let mut mesh = Mesh { name: "bumps".to_owned(), ..Mesh::default() };
+    let (rows, columns) = (120_u32, 120_u32);
+    for i in 0..=rows {
+        for j in 0..columns {
+            let (a, b) = (
+                std::f64::consts::PI * f64::from(i) / f64::from(rows),
+                std::f64::consts::TAU * f64::from(j) / f64::from(columns),
+            );
+            let bump = 1.0 + 0.12 * portable::sin(7.0 * a) * portable::sin(6.0 * b);
+            let (ring, height) = (portable::sin(a) * bump, portable::cos(a) * bump);
+            mesh.positions.push([ring * portable::cos(b), height, ring * portable::sin(b)].map(|c| c as f32));
+        }
+    }
+    for i in 0..rows {
+        for j in 0..columns {
+            let at = |i: u32, j: u32| i * columns + j % columns;
+            mesh.triangles.push([at(i, j), at(i, j + 1), at(i + 1, j)]);
+            mesh.triangles.push([at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)]);
+        }
+    }
+    let mut scene = scene(Vec::new());
+    let id = scene.meshes.push(mesh);
+    scene.objects.push(object("bumps", Shape::Mesh(id)));
+    check("bumps", &scene);
 }
 
 #[test]
