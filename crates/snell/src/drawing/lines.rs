@@ -5,16 +5,15 @@ use rayon::prelude::*;
 use snell_math::{Bounds3, Homogeneous3};
 
 use super::crossings::Crossings;
+use super::meetings::{body, meetings};
 use super::mesh::mesh_lines;
 use super::screen::{Sample, Screen};
 use super::visibility::{Part, Visibility};
 use crate::geometry::{Form, Geometry, QueryScratch, WorldSurface};
-use crate::outline::{self, Body, Feature, FeatureKind, OutlineOptions};
+use crate::outline::{self, Feature, FeatureKind, OutlineOptions};
 
 /// How near to its true curve a chain of points is asked to be, in pixels.
 const CHAIN: f64 = 0.002;
-/// Bodies are looked at for where they run through each other only where there are at most so many pairs of them.
-const MOST_PAIRS: usize = 20_000;
 
 /// A line of the scene, or one of those that are drawn into it.
 #[derive(Debug)]
@@ -83,59 +82,12 @@ pub fn gather(geometry: &Geometry, screen: &Screen<'_>, options: &LineOptions) -
         }
     };
     let mut lines: Vec<Line> = surfaces.par_iter().flat_map_iter(of_surface).collect();
-    let pairs = meeting_pairs(&surfaces);
-    let meetings: Vec<Line> = pairs
-        .into_par_iter()
-        .flat_map_iter(|(a, b)| {
-            let (a, b) = (&surfaces[a], &surfaces[b]);
-            let features = match (body(a), body(b)) {
-                (Some(one), Some(other)) => outline::intersections(&one, &other, &outline_options),
-                _ => Vec::new(),
-            };
-            features.into_iter().map(move |feature| Line {
-                feature,
-                object: a.object,
-                material: a.material,
-                mark: None,
-                surely_hidden: false,
-            })
-        })
-        .collect();
-    lines.extend(meetings);
-    lines
-}
-
-fn body<'s>(surface: &'s WorldSurface<'_>) -> Option<Body<'s>> {
-    let form = match &surface.form {
-        Form::Shape(shape) => outline::Form::Shape(shape),
-        Form::Solid(solid) => outline::Form::Solid(solid),
-        Form::Mesh(..) => return None,
+    let of_meeting = |(index, feature): (usize, Feature)| {
+        let WorldSurface { object, material, .. } = surfaces[index];
+        Line { feature, object, material, mark: None, surely_hidden: false }
     };
-    Some(Body { form, space_from_body: surface.world_from_own.as_ref() })
-}
-
-/// The pairs of shapes and solids whose boxes overlap: found by a sweep along x.
-fn meeting_pairs(surfaces: &[WorldSurface<'_>]) -> Vec<(usize, usize)> {
-    let mut order: Vec<usize> =
-        (0..surfaces.len()).filter(|&index| !matches!(surfaces[index].form, Form::Mesh(..))).collect();
-    order.sort_by(|&a, &b| surfaces[a].bounds.min.x().total_cmp(&surfaces[b].bounds.min.x()).then(a.cmp(&b)));
-    let mut pairs = Vec::new();
-    let mut open: Vec<usize> = Vec::new();
-    for &index in &order {
-        let bounds = &surfaces[index].bounds;
-        open.retain(|&other| surfaces[other].bounds.max.x() >= bounds.min.x());
-        for &other in &open {
-            if !surfaces[other].bounds.intersection(bounds).is_empty() {
-                pairs.push((index.min(other), index.max(other)));
-            }
-        }
-        if pairs.len() > MOST_PAIRS {
-            return Vec::new();
-        }
-        open.push(index);
-    }
-    pairs.sort_unstable();
-    pairs
+    lines.extend(meetings(&surfaces, screen, &outline_options).into_iter().map(of_meeting));
+    lines
 }
 
 /// Divides lines into what is seen and what is hidden. Those without any part in the picture are left out.

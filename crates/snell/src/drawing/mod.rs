@@ -10,6 +10,7 @@ mod duplicates;
 mod furniture;
 mod lines;
 mod marks;
+mod meetings;
 mod mesh;
 mod pen;
 mod screen;

@@ -152,7 +152,7 @@ fn draw_panel(
     let [right, up, _] = first.axes();
     let center = center + right * (unit * (0.5 * (x0 + x1) - 500.0)) - up * (unit * (0.5 * (y0 + y1) - 425.0));
     let share = ((x1 - x0) / 1000.0).max((y1 - y0) / 850.0);
-    let camera = looking(2.0 * size * share / 0.84, center)?;
+    let camera = looking(2.0 * size * share / 0.82, center)?;
     let bounds = all.iter().fold(snell_math::Bounds3::EMPTY, |all, p| all.including(*p));
     let screen = Screen::new(&camera, &bounds)?;
     let map = RectangleMap::new(&raster, place)?;
@@ -225,8 +225,8 @@ fn draw_panel(
     } else {
         ("*z* = 1".to_owned(), "*z* = −1".to_owned())
     };
-    text(&near, beside(corners[4], -1.2, 2.6), Horizontal::Right, blue, LABEL);
-    text(&far, beside(corners[1], 1.2, 2.6), Horizontal::Left, blue, LABEL);
+    text(&near, beside(corners[4], 0.0, 3.4), Horizontal::Center, blue, LABEL);
+    text(&far, beside(corners[1], 0.0, 3.4), Horizontal::Center, blue, LABEL);
     if let Some(eye) = eye {
         text("*e*", beside(eye, 2.0, 1.2), Horizontal::Left, blue, LABEL);
     }

@@ -328,6 +328,10 @@ fn a_mesh_of_many_triangles_agrees_with_its_drawing() {
     let id = scene.meshes.push(mesh);
     scene.objects.push(object("bumps", Shape::Mesh(id)));
     check("bumps", &scene);
+    // Sunk into a floor, and with a ball sunk into it.
+    scene.objects.push(object("floor", Shape::Plane { point: [0.0, -0.5, 0.0].into(), normal: Vector3::Y }));
+    scene.objects.push(object("ball", ball([0.3, 0.6, 0.9], 0.5)));
+    check("bumps among others", &scene);
 }
 
 #[test]

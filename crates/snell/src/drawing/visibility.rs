@@ -169,8 +169,8 @@ impl Visibility<'_> {
         };
         let Some(ray) = self.ray_to(target.into()) else { return false };
         let distance = (target - ray.origin).dot(ray.direction);
-        let margin = match feature.curve {
-            Curve::Polyline(_) => BEFORE_CHORD * pixel,
+        let margin = match (&feature.curve, feature.kind) {
+            (Curve::Polyline(_), _) | (_, FeatureKind::Intersection) => BEFORE_CHORD * pixel,
             _ => 0.0,
         };
         !self.geometry.is_blocked(&ray, distance - (BEFORE * distance + margin), scratch)
