@@ -44,9 +44,12 @@ pub struct Mark {
 struct Label {
     markup: String,
     at: Point3,
-    /// From there, on the page: millimetres, x to the right, y up.
-    offset: [f64; 2],
+    /// From there, on the page: millimetres, x to the right, y up. Without it, a little beyond the tip of the mark's arrow.
+    offset: Option<[f64; 2]>,
 }
+
+/// How far beyond the tip of an arrow its label is, in millimetres.
+const BEYOND: f64 = 2.6;
 
 impl Mark {
     fn new(name: impl Into<String>, color: [u8; 3], width: f64) -> Self {
@@ -86,8 +89,24 @@ impl Mark {
     }
 
     fn label(mut self, markup: Option<&str>, at: Point3, offset: [f64; 2]) -> Self {
-        self.labels.extend(markup.map(|markup| Label { markup: markup.to_owned(), at, offset }));
+        self.labels.extend(markup.map(|markup| Label { markup: markup.to_owned(), at, offset: Some(offset) }));
         self
+    }
+
+    /// With a label beyond the tip of its arrow.
+    fn named(mut self, markup: Option<&str>, tip: Point3) -> Self {
+        self.labels.extend(markup.map(|markup| Label { markup: markup.to_owned(), at: tip, offset: None }));
+        self
+    }
+
+    /// Whether the end of its last line is seen, where that can be hidden.
+    fn shows_end(&self, index: usize, seen: &[SeenLine]) -> bool {
+        if !self.can_be_hidden {
+            return true;
+        }
+        let Some(end) = self.features.last().map(|feature| feature.curve.domain()[1]) else { return true };
+        let last = seen.iter().rfind(|seen| seen.line.mark == Some(index));
+        last.and_then(|line| line.parts.last()).is_some_and(|part| part.visible && part.to >= end)
     }
 
     /// The box around it.
@@ -118,7 +137,7 @@ pub fn all(scene: &CompiledScene, settings: &DrawingSettings, bounds: &Bounds3) 
         for ((axis, color), name) in [Vector3::X, Vector3::Y, Vector3::Z].into_iter().zip(AXES).zip(["x", "y", "z"]) {
             let tip = Point3::ORIGIN + axis * length;
             let mark = Mark::new(format!("axis {name}"), color, drawing.line_width).arrow(Point3::ORIGIN, tip);
-            marks.push(mark.hidden_by_things(true).label(Some(&format!("*{name}*")), tip, [1.2, 1.2]));
+            marks.push(mark.hidden_by_things(true).named(Some(&format!("*{name}*")), tip));
         }
     }
     for grid in &drawing.grids {
@@ -166,7 +185,10 @@ pub fn all(scene: &CompiledScene, settings: &DrawingSettings, bounds: &Bounds3) 
     for point in &drawing.points {
         let mut mark = Mark::new(point.label.as_deref().unwrap_or("point"), code(point.color), drawing.line_width);
         mark.dots.push((point.position, point.size));
-        mark.can_be_hidden = point.hidden;
+        if point.hidden {
+            // Without length, but it is asked whether it is seen.
+            mark = mark.line(point.position, point.position).hidden_by_things(true);
+        }
         marks.push(mark.label(point.label.as_deref(), point.position, point.offset));
     }
     Ok(marks)
@@ -282,18 +304,18 @@ impl DrawnCamera {
         if mark.axes {
             for ((axis, text), color) in [(u, "*u*"), (v, "*v*"), (w, "*w*")].into_iter().zip(AXES) {
                 let arrow = Mark::new(format!("{name} {}", text.trim_matches('*')), color, width);
-                marks.push(arrow.arrow(eye, eye + axis * length).label(labels(text), eye + axis * length, [1.0, 1.0]));
+                marks.push(arrow.arrow(eye, eye + axis * length).named(labels(text), eye + axis * length));
             }
         }
         if mark.up {
             let up = mark.camera.up.normalize() * (1.2 * length);
             let arrow = Mark::new(format!("{name} up"), [90, 90, 90], width).arrow(eye, eye + up);
-            marks.push(arrow.label(labels("*t*"), eye + up, [1.0, 1.0]));
+            marks.push(arrow.named(labels("*t*"), eye + up));
         }
         if mark.gaze {
             let tip = eye - w * (1.5 * length);
             let arrow = Mark::new(format!("{name} gaze"), color, 1.3 * width).arrow(eye, tip);
-            marks.push(arrow.label(labels("*g*"), tip, [-0.8, 1.6]));
+            marks.push(arrow.named(labels("*g*"), tip));
         }
         let mut dot = Mark::new(format!("{name} eye"), color, width);
         dot.dots.push((eye, 1.6));
@@ -350,6 +372,7 @@ pub fn groups(marks: &[Mark], seen: &[SeenLine], screen: &Screen<'_>, page_from_
             items.push(Item::Path(Path { subpaths, stroke: Some(stroke), fill: None }));
         }
         if mark.arrow
+            && mark.shows_end(index, seen)
             && let Some([tail, tip]) = mark.features.last().and_then(|feature| ends(&feature.curve))
             && let (Some(from), Some(to)) = (place(tail), place(tip))
         {
@@ -360,7 +383,7 @@ pub fn groups(marks: &[Mark], seen: &[SeenLine], screen: &Screen<'_>, page_from_
                 mark.color,
             )));
         }
-        for &(at, diameter) in &mark.dots {
+        for &(at, diameter) in mark.dots.iter().filter(|_| mark.arrow || mark.shows_end(index, seen)) {
             if let Some(center) = place(at) {
                 let disk = vector::Subpath::ellipse(center, [0.5 * diameter; 2], 0.0);
                 items.push(Item::Path(Path { subpaths: vec![disk], stroke: None, fill: Some(mark.color) }));
@@ -371,10 +394,24 @@ pub fn groups(marks: &[Mark], seen: &[SeenLine], screen: &Screen<'_>, page_from_
     let mut groups: Vec<Group> = marks.iter().enumerate().map(group).collect();
     // After all lines, so that none runs through them.
     let mut labels = Group { name: "labels".to_owned(), items: Vec::new() };
-    for mark in marks {
-        for label in &mark.labels {
+    for (index, mark) in marks.iter().enumerate() {
+        // The name of an arrow or a point goes with it.
+        let is_shown = !(mark.arrow || mark.features.len() == mark.dots.len()) || mark.shows_end(index, seen);
+        for label in mark.labels.iter().filter(|_| is_shown) {
             let Some([x, y]) = place(label.at) else { continue };
-            let [dx, dy] = label.offset;
+            let [dx, dy] = label.offset.unwrap_or_else(|| {
+                let tail = mark.features.last().and_then(|feature| ends(&feature.curve)).and_then(|[tail, _]| place(tail));
+                let [tx, ty] = tail.unwrap_or([x, y + 1.0]);
+                let (dx, dy) = (x - tx, ty - y);
+                let length = (dx * dx + dy * dy).sqrt().max(1e-9);
+                [BEYOND * dx / length, BEYOND * dy / length]
+            });
+            if label.offset.is_none() {
+                let (horizontal, vertical) = (Horizontal::Center, Vertical::Middle);
+                let text = Text { at: [x + dx, y - dy], horizontal, vertical, ..label_text(&label.markup, mark.color) };
+                labels.items.push(Item::Text(text));
+                continue;
+            }
             let horizontal = if dx > 0.3 {
                 Horizontal::Left
             } else if dx < -0.3 {

@@ -60,7 +60,7 @@ impl Visibility<'_> {
         for pair in breaks.windows(2) {
             let length = pair[1] - pair[0];
             // Shorter ones are within what changes are found to; but a curve that is short itself is asked about.
-            if length < PRECISION && (breaks.len() > 2 || length <= 0.0) {
+            if length < PRECISION && breaks.len() > 2 {
                 continue;
             }
             let count = (length / SPACING).ceil().max(1.0);
@@ -70,6 +70,10 @@ impl Visibility<'_> {
                 probes.push((t, self.is_visible(feature, t, scratch)));
                 index += 1.0;
             }
+        }
+        // A point, or a line that is seen end on.
+        if probes.is_empty() {
+            probes.push((first.t, self.is_visible(feature, first.t, scratch)));
         }
         let Some(&(_, start)) = probes.first() else { return Vec::new() };
         let break_parameters: Vec<f64> = breaks.iter().map(|length| route.parameter(*length)).collect();
