@@ -6,18 +6,23 @@
 //!
 //! Spaces and units are the caller's: a [`Body`] says how its own space lies in that.
 
+mod assembly;
 mod contour;
 mod curve;
+mod meet;
 mod patch;
 mod rims;
+mod strand;
 #[cfg(test)]
 mod tests;
 mod torus;
+mod trace;
 
 use snell_math::{Homogeneous3, Point3, Transform, Vector3};
 
 use crate::csg::CsgSolid;
 use crate::shape::Shape;
+use assembly::Assembly;
 pub use curve::Curve;
 use patch::Patch;
 pub use torus::TorusContour;
@@ -119,7 +124,7 @@ impl std::fmt::Debug for OutlineOptions<'_> {
 pub fn features(body: &Body, eye: Homogeneous3, options: &OutlineOptions) -> Vec<Feature> {
     match body.form {
         Form::Shape(shape) => shape_features(shape, body.space_from_body, eye, options),
-        Form::Solid(_) => Vec::new(),
+        Form::Solid(_) => Assembly::new(body).features(eye, options),
     }
 }
 
@@ -161,6 +166,5 @@ fn shape_features(
 
 /// The curves in which the surfaces of two bodies run through each other.
 pub fn intersections(a: &Body, b: &Body, options: &OutlineOptions) -> Vec<Feature> {
-    let _ = (a, b, options);
-    Vec::new()
+    assembly::intersections(&Assembly::new(a), &Assembly::new(b), options)
 }

@@ -70,6 +70,30 @@ impl Patch {
         self.surface.height(self.local(point))
     }
 
+    /// As [`Patch::height`], with its gradient in space.
+    pub(super) fn height_and_gradient(&self, point: Point3) -> (f64, Vector3) {
+        let local = self.local(point);
+        let normal = Normal3::from(self.surface.normal(local));
+        (self.surface.height(local), self.space_from_patch.normal(normal).as_vector())
+    }
+
+    /// How far within its limits a point of the surface is, relative to its size; negative outside.
+    pub(super) fn margin(&self, point: Point3) -> f64 {
+        let p = self.local(point);
+        match self.limits {
+            Limits::None => f64::INFINITY,
+            Limits::Rectangle { width, height } => {
+                p.x().min(width - p.x()).min(p.y()).min(height - p.y()) / (width + height)
+            }
+            Limits::Ring { inner, outer } => {
+                let distance = (p.x() * p.x() + p.y() * p.y()).sqrt();
+                let within = if inner > 0.0 { distance - inner } else { f64::INFINITY };
+                within.min(outer - distance) / outer
+            }
+            Limits::Length(length) => p.z().min(length - p.z()) / length,
+        }
+    }
+
     /// A length of the patch's coordinates over that of space, at most: what turns `height` into lengths of space from above.
     pub(super) fn stretch(&self) -> f64 {
         let matrix = self.space_from_patch.affine().matrix3;

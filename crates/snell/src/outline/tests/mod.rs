@@ -2,6 +2,8 @@
 
 mod contours;
 mod degenerate;
+mod pictures;
+mod solids;
 
 use snell_math::{Homogeneous3, Point3, Transform, Vector3};
 
