@@ -99,6 +99,10 @@ impl Mark {
         self
     }
 
+    fn is_point(&self) -> bool {
+        self.dots.len() == 1 && self.features.len() <= 1 && !self.arrow
+    }
+
     /// Whether the end of its last line is seen, where that can be hidden.
     fn shows_end(&self, index: usize, seen: &[SeenLine]) -> bool {
         if !self.can_be_hidden {
@@ -383,7 +387,7 @@ pub fn groups(marks: &[Mark], seen: &[SeenLine], screen: &Screen<'_>, page_from_
                 mark.color,
             )));
         }
-        for &(at, diameter) in mark.dots.iter().filter(|_| mark.arrow || mark.shows_end(index, seen)) {
+        for &(at, diameter) in mark.dots.iter().filter(|_| !mark.is_point() || mark.shows_end(index, seen)) {
             if let Some(center) = place(at) {
                 let disk = vector::Subpath::ellipse(center, [0.5 * diameter; 2], 0.0);
                 items.push(Item::Path(Path { subpaths: vec![disk], stroke: None, fill: Some(mark.color) }));
@@ -396,11 +400,12 @@ pub fn groups(marks: &[Mark], seen: &[SeenLine], screen: &Screen<'_>, page_from_
     let mut labels = Group { name: "labels".to_owned(), items: Vec::new() };
     for (index, mark) in marks.iter().enumerate() {
         // The name of an arrow or a point goes with it.
-        let is_shown = !(mark.arrow || mark.features.len() == mark.dots.len()) || mark.shows_end(index, seen);
+        let is_shown = !(mark.arrow || mark.is_point()) || mark.shows_end(index, seen);
         for label in mark.labels.iter().filter(|_| is_shown) {
             let Some([x, y]) = place(label.at) else { continue };
             let [dx, dy] = label.offset.unwrap_or_else(|| {
-                let tail = mark.features.last().and_then(|feature| ends(&feature.curve)).and_then(|[tail, _]| place(tail));
+                let tail =
+                    mark.features.last().and_then(|feature| ends(&feature.curve)).and_then(|[tail, _]| place(tail));
                 let [tx, ty] = tail.unwrap_or([x, y + 1.0]);
                 let (dx, dy) = (x - tx, ty - y);
                 let length = (dx * dx + dy * dy).sqrt().max(1e-9);

@@ -117,7 +117,8 @@ impl Strand {
         match self.curve {
             Curve::Segment { .. } | Curve::Conic { .. } => {}
             _ => {
-                return self.sampled_meetings(|p| form.square(Homogeneous3::from(Point3::ORIGIN + patch.local(p))), out);
+                return self
+                    .sampled_meetings(|p| form.square(Homogeneous3::from(Point3::ORIGIN + patch.local(p))), out);
             }
         }
         match self.curve.transformed(&patch.space_from_patch.inverse()) {
