@@ -282,11 +282,11 @@ pub struct ViewArguments {
     pub scene: Option<String>,
 
     /// Follow a point of the world to its pixel; as often as needed
-    #[arg(long, value_name = "X,Y,Z", value_parser = coordinates::<3>, allow_negative_numbers = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = coordinates::<3>, allow_hyphen_values = true)]
     pub point: Vec<[f64; 3]>,
 
     /// Follow a segment, and tell where it is clipped; as often as needed
-    #[arg(long, value_name = "X,Y,Z,X,Y,Z", value_parser = coordinates::<6>, allow_negative_numbers = true)]
+    #[arg(long, value_name = "X,Y,Z,X,Y,Z", value_parser = coordinates::<6>, allow_hyphen_values = true)]
     pub segment: Vec<[f64; 6]>,
 
     /// n, the z of the near plane in eye space: negative [default: the camera's, or before the scene]

@@ -199,7 +199,7 @@ pub struct Text {
     pub vertical: Vertical,
     /// Turned by this angle about `at`, in radians, counter-clockwise as seen.
     pub rotation: f64,
-    /// Paints a margin of the page's white around the letters, so that lines below do not disturb them.
+    /// Stands on a patch of the page's white, so that lines below do not disturb it.
     pub halo: bool,
 }
 

@@ -5,7 +5,7 @@
 use snell_math::portable;
 use ttf_parser::{Face, GlyphId, OutlineBuilder};
 
-use super::{Horizontal, Path, Piece, Stroke, Subpath, Text, Vertical};
+use super::{Horizontal, Path, Piece, Subpath, Text, Vertical};
 
 const REGULAR: &[u8] = include_bytes!("../../assets/fonts/libertinus-serif-regular.otf");
 const ITALIC: &[u8] = include_bytes!("../../assets/fonts/libertinus-serif-italic.otf");
@@ -19,8 +19,8 @@ const LOWERED: f64 = 0.17;
 const CAPITAL: f64 = 0.645;
 /// How deep letters such as p go.
 const DESCENT: f64 = 0.24;
-/// The width of the margin of a halo, in heights of the font.
-const HALO: f64 = 0.22;
+/// The margin around the letters of a text with a ground of its own, in heights of the font.
+const HALO: f64 = 0.1;
 /// More letters than this are not drawn: no line of a drawing has so many.
 const MOST_LETTERS: usize = 10_000;
 
@@ -74,7 +74,7 @@ pub(super) fn plain(markup: &str) -> String {
     runs(markup).into_iter().map(|run| run.letters).collect()
 }
 
-/// The filled outlines of a text, after those of its halo.
+/// The filled outlines of a text, after the ground that keeps other lines from it.
 pub(super) fn outlines(text: &Text) -> Vec<Path> {
     let faces = Faces::new();
     let width = measure(&text.markup, text.size).width;
@@ -110,8 +110,13 @@ pub(super) fn outlines(text: &Text) -> Vec<Path> {
     let subpaths = letters.subpaths;
     let mut paths = Vec::new();
     if text.halo && !subpaths.is_empty() {
-        let stroke = Stroke { color: [255; 3], width: 2.0 * HALO * text.size, dashes: Vec::new() };
-        paths.push(Path { subpaths: subpaths.clone(), stroke: Some(stroke), fill: Some([255; 3]) });
+        let margin = HALO * text.size;
+        let (x0, x1) = (left - margin, left + width + margin);
+        let (y0, y1) = (base - CAPITAL * text.size - margin, base + DESCENT * text.size + 0.5 * margin);
+        let place = |[x, y]: [f64; 2]| [text.at[0] + cos * x + sin * y, text.at[1] - sin * x + cos * y];
+        let mut ground = Subpath::polyline(&[[x0, y0], [x1, y0], [x1, y1], [x0, y1]].map(place));
+        ground.closed = true;
+        paths.push(Path { subpaths: vec![ground], stroke: None, fill: Some([255; 3]) });
     }
     paths.push(Path { subpaths, stroke: None, fill: Some(text.color) });
     paths
