@@ -71,13 +71,13 @@ pub fn run(arguments: &ViewArguments) -> Result<u8, Failure> {
         ViewFormat::Text => as_text(&view),
         ViewFormat::Json => format!("{:#}\n", as_json(&view)),
         ViewFormat::Svg => {
-            let follow = points.into_iter().chain(segments.into_iter().flatten()).collect();
             let crease_angle = scene.drawing.crease_angle;
             let picture = StagePicture {
                 pixels,
                 planes: Some([near, far]),
                 crease_angle,
-                follow,
+                points,
+                segments,
                 width: scene.drawing.width.max(160.0),
             };
             let page = draw_stages(&compiled, &picture).map_err(wrong)?;

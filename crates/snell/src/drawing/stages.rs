@@ -27,8 +27,10 @@ pub struct StagePicture {
     pub planes: Option<[f64; 2]>,
     /// Edges of meshes are creases where their faces turn by more than this, radians.
     pub crease_angle: f64,
-    /// A point of the world to be followed, or a segment.
-    pub follow: Vec<Point3>,
+    /// Points of the world to be followed.
+    pub points: Vec<Point3>,
+    /// Segments of the world to be followed, as far as they are inside.
+    pub segments: Vec<[Point3; 2]>,
     /// The width of the page in millimetres.
     pub width: f64,
 }
@@ -39,6 +41,12 @@ struct Panel<'a> {
     /// From the canonical volume, as homogeneous coordinates, into the space that is shown.
     shown_from_canonical: Matrix4,
     with_eye: bool,
+}
+
+/// What is followed, in the canonical volume before the division.
+struct Followed {
+    points: Vec<Homogeneous3>,
+    segments: Vec<[Homogeneous3; 2]>,
 }
 
 /// Draws both volumes.
@@ -65,7 +73,10 @@ pub fn draw_stages(scene: &CompiledScene, picture: &StagePicture) -> Result<Page
             chains.extend(clipped_chain(&points));
         }
     }
-    let followed: Vec<Homogeneous3> = picture.follow.iter().map(|p| into.map(*p)).collect();
+    let followed = Followed {
+        points: picture.points.iter().map(|p| into.map(*p)).collect(),
+        segments: picture.segments.iter().map(|ends| ends.map(|p| into.map(p))).collect(),
+    };
     let eye_from_canonical = eye_from_canonical(&pipeline);
     let panels = [
         Panel { title: "what the camera sees", shown_from_canonical: eye_from_canonical, with_eye: true },
@@ -112,7 +123,7 @@ fn draw_panel(
     panel: &Panel<'_>,
     pipeline: &Pipeline,
     chains: &[Vec<Homogeneous3>],
-    followed: &[Homogeneous3],
+    followed: &Followed,
     place: &Rectangle,
     page: &mut Page,
 ) -> Result<(), ViewingError> {
@@ -210,7 +221,7 @@ fn draw_panel(
 
     let mut labels = Group { name: format!("{}: labels", panel.title), items: Vec::new() };
     let mut text = |markup: &str, at: [f64; 2], horizontal: Horizontal, color: [u8; 3], size: f64| {
-        let text = Text { at, horizontal, vertical: Vertical::Middle, size, ..label_text(markup, color) };
+        let text = Text { at, horizontal, vertical: Vertical::Middle, size, halo: false, ..label_text(markup, color) };
         labels.items.push(Item::Text(text));
     };
     let blue = [32, 72, 168];
@@ -230,19 +241,22 @@ fn draw_panel(
     if let Some(eye) = eye {
         text("*e*", beside(eye, 2.0, 1.2), Horizontal::Left, blue, LABEL);
     }
-    for (index, p) in followed.iter().enumerate() {
-        let Some(shown) = show(*p).filter(|_| crate::viewing::outside(*p).next().is_none()) else { continue };
-        let red = [196, 40, 28];
-        page_dot(&mut page.groups, on(shown), red);
-        let name = if followed.len() == 1 { "*p*".to_owned() } else { format!("*p*_{}", index + 1) };
-        text(&name, beside(shown, 1.4, -1.6), Horizontal::Left, red, LABEL);
-    }
     text(panel.title, [0.5 * (place.left + place.right), place.bottom + 4.5], Horizontal::Center, [0; 3], 4.0);
-    if let (false, [a, b]) = (followed.len() < 2, followed)
-        && let Some(part) = crate::viewing::clip_segment(*a, *b)
-        && let (Some(from), Some(to)) = (show(a.lerp(*b, part.from)), show(a.lerp(*b, part.to)))
-    {
-        let path = Path { subpaths: vec![line(from, to)], stroke: stroke([196, 40, 28], 0.45, &[]), fill: None };
+    let red = [196, 40, 28];
+    let mut put = |name: String, at: Homogeneous3, groups: &mut Vec<Group>| {
+        let Some(shown) = show(at).filter(|_| crate::viewing::outside(at).next().is_none()) else { return };
+        page_dot(groups, on(shown), red);
+        text(&name, beside(shown, 1.4, -1.6), Horizontal::Left, red, LABEL);
+    };
+    for (index, p) in followed.points.iter().enumerate() {
+        put(format!("*p*_{}", index + 1), *p, &mut page.groups);
+    }
+    for (index, [a, b]) in followed.segments.iter().enumerate() {
+        put(format!("*a*_{}", index + 1), *a, &mut page.groups);
+        put(format!("*b*_{}", index + 1), *b, &mut page.groups);
+        let Some(part) = crate::viewing::clip_segment(*a, *b) else { continue };
+        let (Some(from), Some(to)) = (show(a.lerp(*b, part.from)), show(a.lerp(*b, part.to))) else { continue };
+        let path = Path { subpaths: vec![line(from, to)], stroke: stroke(red, 0.45, &[]), fill: None };
         page.groups.push(Group { name: format!("{}: segment", panel.title), items: vec![Item::Path(path)] });
     }
     page.groups.push(labels);
