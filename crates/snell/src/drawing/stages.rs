@@ -219,12 +219,14 @@ fn draw_panel(
     let lines = Path { subpaths: vector::join(shown, 1e-3), stroke: stroke([0; 3], 0.3, &[]), fill: None };
     page.groups.push(Group { name: format!("{}: scene", panel.title), items: vec![Item::Path(lines)] });
 
+    let blue = [32, 72, 168];
     let mut labels = Group { name: format!("{}: labels", panel.title), items: Vec::new() };
     let mut text = |markup: &str, at: [f64; 2], horizontal: Horizontal, color: [u8; 3], size: f64| {
-        let text = Text { at, horizontal, vertical: Vertical::Middle, size, halo: false, ..label_text(markup, color) };
+        // What is followed lies within the lines of the scene, which its names should not wipe out.
+        let halo = color == blue;
+        let text = Text { at, horizontal, vertical: Vertical::Middle, size, halo, ..label_text(markup, color) };
         labels.items.push(Item::Text(text));
     };
-    let blue = [32, 72, 168];
     let beside = |p: Point3, dx: f64, dy: f64| {
         let [x, y] = on(p);
         [x + dx, y + dy]

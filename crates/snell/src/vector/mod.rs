@@ -7,8 +7,6 @@ mod lines;
 mod pdf;
 mod raster;
 mod svg;
-#[cfg(test)]
-mod tests;
 mod text;
 
 use std::f64::consts::TAU;

@@ -1,1 +1,0 @@
-//! Pages in all three formats against each other and against independent viewers.
