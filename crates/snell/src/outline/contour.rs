@@ -46,8 +46,7 @@ fn sphere(radius: f64, eye: Homogeneous3) -> Option<Curve> {
     // The cosine of the angle between the direction to the eye and the normals of the circle.
     let cosine = if eye.h() == 0.0 { 0.0 } else { radius / eye.vector().length() };
     let square = (1.0 - cosine) * (1.0 + cosine);
-    // Negated, for NaN.
-    if !(square > TOUCH) {
+    if square.is_nan() || square <= TOUCH {
         return None;
     }
     let (x, y) = towards.orthonormal_basis();
@@ -61,7 +60,7 @@ fn side(thin: f64, slope: f64, length: f64, eye: Homogeneous3) -> Vec<Curve> {
     let Some(towards) = across.try_normalize() else { return Vec::new() };
     let cosine = (slope * eye.z() + eye.h() * thin) / across.length();
     let square = (1.0 - cosine) * (1.0 + cosine);
-    if !(square > TOUCH) {
+    if square.is_nan() || square <= TOUCH {
         return Vec::new();
     }
     let aside = Vector3::new(-towards.y(), towards.x(), 0.0) * square.sqrt();

@@ -100,8 +100,7 @@ fn plane_with_round(plane: &Patch, round: &Patch) -> Option<Vec<Curve>> {
 
 fn plane_with_sphere(normal: Vector3, d: f64, radius: f64) -> Vec<Curve> {
     let square = (radius - d) * (radius + d);
-    // Negated, for NaN.
-    if !(square > TOUCH * radius * radius) {
+    if square.is_nan() || square <= TOUCH * radius * radius {
         return Vec::new();
     }
     let (x, y) = normal.orthonormal_basis();
@@ -136,7 +135,7 @@ fn plane_with_side(normal: Vector3, d: f64, thin: f64, slope: f64, length: f64) 
     let weight = thin / length;
     let cosine = (weight * d / length - slope * normal.z()) / ((weight * weight + slope * slope) * across);
     let square = (1.0 - cosine) * (1.0 + cosine);
-    if !(square > TOUCH) {
+    if square.is_nan() || square <= TOUCH {
         return Vec::new();
     }
     let aside = Vector3::new(-towards.y(), towards.x(), 0.0) * square.sqrt();
@@ -153,7 +152,7 @@ fn plane_with_torus(normal: Vector3, d: f64, major: f64, minor: f64) -> Option<V
     if across < PARALLEL {
         let z = d.copysign(d * normal.z());
         let square = (minor - z) * (minor + z);
-        if !(square > TOUCH * minor * minor) {
+        if square.is_nan() || square <= TOUCH * minor * minor {
             return Some(Vec::new());
         }
         return Some(circles([major + square.sqrt(), major - square.sqrt()].map(|radius| (radius, z))));
@@ -218,6 +217,12 @@ fn around_one_axis(a: &Patch, b: &Patch) -> Option<Vec<Curve>> {
     }
     let up = relative.vector(Vector3::Z) * (1.0 / scale);
     let size = a.local_bounds().diagonal().length().min(b.local_bounds().diagonal().length() * scale);
+    if let (Surface::Side { thin, slope: 0.0 }, Surface::Side { thin: other, slope: 0.0 }) = (a.surface, b.surface)
+        && up.x().abs().max(up.y().abs()) < PARALLEL
+    {
+        let local = parallel_sides(thin, origin, other * scale, a.limits);
+        return Some(local.iter().map(|curve| curve.transformed(&a.space_from_patch)).collect());
+    }
     let is_along = is_sphere(b) || up.x().abs().max(up.y().abs()) < PARALLEL;
     let is_on_axis = origin.x().abs().max(origin.y().abs()) < PARALLEL * size;
     if !(is_along && is_on_axis) {
@@ -227,6 +232,15 @@ fn around_one_axis(a: &Patch, b: &Patch) -> Option<Vec<Curve>> {
     let second = Profile::new(b.surface, scale, 1.0_f64.copysign(up.z()), origin.z())?;
     let local = circles(profiles(first, second));
     Some(local.iter().map(|curve| curve.transformed(&a.space_from_patch)).collect())
+}
+
+/// The two lines of cylinders with parallel axes, the first one's on z: where two circles cross.
+fn parallel_sides(first: f64, center: Vector3, second: f64, limits: Limits) -> Vec<Curve> {
+    let Limits::Length(length) = limits else { return Vec::new() };
+    let circle = |at: [f64; 2], radius| Profile::Circle { distance: at[0], z: at[1], radius };
+    let crossings = profiles(circle([0.0, 0.0], first), circle([center.x(), center.y()], second));
+    let line = |(x, y)| Curve::line(Point3::new(x, y, 0.0), Point3::new(x, y, length));
+    crossings.into_iter().map(line).collect()
 }
 
 /// The circle of two spheres, the first one around the origin.
@@ -253,7 +267,7 @@ fn profiles(first: Profile, second: Profile) -> Vec<(f64, f64)> {
             let steep = 1.0 + slope * slope;
             let gap = thin + slope * z - distance;
             let square = radius * radius - gap * gap / steep;
-            if !(square > TOUCH * radius * radius) {
+            if square.is_nan() || square <= TOUCH * radius * radius {
                 return Vec::new();
             }
             let (middle, half) = (-gap * slope / steep, (square / steep).sqrt());
@@ -267,7 +281,7 @@ fn profiles(first: Profile, second: Profile) -> Vec<(f64, f64)> {
             }
             let along = 0.5 * (apart + (radius - other) * (radius + other) / apart);
             let square = (radius - along) * (radius + along);
-            if !(square > TOUCH * radius * radius) {
+            if square.is_nan() || square <= TOUCH * radius * radius {
                 return Vec::new();
             }
             let (ux, uz, half) = (dx / apart, dz / apart, square.sqrt());

@@ -94,13 +94,6 @@ impl Patch {
         }
     }
 
-    /// A length of the patch's coordinates over that of space, at most: what turns `height` into lengths of space from above.
-    pub(super) fn stretch(&self) -> f64 {
-        let matrix = self.space_from_patch.affine().matrix3;
-        let squared = matrix.x_axis.length_squared() + matrix.y_axis.length_squared() + matrix.z_axis.length_squared();
-        (squared / 3.0).sqrt()
-    }
-
     /// A box around it in its own coordinates.
     pub(super) fn local_bounds(&self) -> Bounds3 {
         let around =

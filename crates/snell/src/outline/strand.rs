@@ -161,7 +161,7 @@ impl Strand {
         for i in 0..count {
             let (low, high) = (parameter(i), parameter(i + 1));
             if (values[i] > 0.0) != (values[i + 1] > 0.0) {
-                out.push(bisect(&at, low, high, values[i] > 0.0));
+                out.push(bisect(at, low, high, values[i] > 0.0));
             }
             // A dip between samples of one sign: the function's least distance from 0 is looked for.
             if i > 0 {
@@ -171,8 +171,8 @@ impl Strand {
                     let (first, last) = (parameter(i - 1), high);
                     let bottom = least(|t| if b > 0.0 { at(t) } else { -at(t) }, first, last);
                     if (at(bottom) > 0.0) != (b > 0.0) {
-                        out.push(bisect(&at, first, bottom, b > 0.0));
-                        out.push(bisect(&at, bottom, last, b <= 0.0));
+                        out.push(bisect(at, first, bottom, b > 0.0));
+                        out.push(bisect(at, bottom, last, b <= 0.0));
                     }
                 }
             }

@@ -10,7 +10,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
-use snell_math::{Point3, Transform, Vector3, portable};
+use snell_math::{Bounds3, Point3, Transform, Vector3, portable};
 
 use super::curve::Curve;
 use super::meet::between;
@@ -27,19 +27,29 @@ const MAX_CELLS: usize = 60_000;
 const MAX_HALVINGS: u32 = 12;
 /// The most points of one curve.
 const MAX_POINTS: usize = 20_000;
+/// Surfaces that cross at no larger an angle, in radians, touch.
+const TANGENT: f64 = 1e-6;
 /// Heights below this, relative to size, are rounding.
 const ZERO: f64 = 1e-14;
 
 /// The curves in which the surfaces of two pieces run through each other, within the limits of one of them at least.
 pub(super) fn trace(a: &Patch, b: &Patch, tolerance: &dyn Fn(Point3) -> f64) -> Vec<Strand> {
     let is_round = |patch: &Patch| patch.surface != Surface::Plane;
-    let (on, other) = if is_round(a) && (!is_round(b) || a.size() <= b.size()) { (a, b) } else { (b, a) };
+    // The grid is on the more tightly bent one, so that its cells are soon small against the other.
+    let (on, other) = if is_round(a) && (!is_round(b) || tight(a) <= tight(b)) { (a, b) } else { (b, a) };
     let Some(grid) = Grid::new(on, other) else { return Vec::new() };
     let onto = [*on, *other];
     let mut strands = Vec::new();
     for chain in grid.chains() {
-        let points = refined(&onto, chain, tolerance);
-        let curve = Curve::Polyline(thinned(&points, tolerance));
+        // Surfaces that touch along a line run through each other by rounding.
+        let crosses = |&p: &Point3| {
+            let [u, v] = onto.each_ref().map(|patch| patch.normal(p).unwrap_or(Vector3::ZERO));
+            u.cross(v).length() > TANGENT
+        };
+        if !chain.iter().any(crosses) {
+            continue;
+        }
+        let curve = Curve::Polyline(refined(&onto, &thinned(&chain, tolerance), tolerance));
         if curve.is_finite() {
             strands.push(Strand { curve, onto: Some(Box::new(onto)) });
         }
@@ -47,15 +57,36 @@ pub(super) fn trace(a: &Patch, b: &Patch, tolerance: &dyn Fn(Point3) -> f64) -> 
     strands
 }
 
+/// About the least radius by which a surface bends, in space.
+fn tight(patch: &Patch) -> f64 {
+    let radius = match (patch.surface, patch.limits) {
+        (Surface::Sphere { radius }, _) => radius,
+        (Surface::Side { thin, slope }, Limits::Length(length)) => thin.max(0.25 * (thin + slope * length)),
+        (Surface::Torus { minor, .. }, _) => minor,
+        _ => f64::INFINITY,
+    };
+    radius * stretch(&patch.space_from_patch)
+}
+
+/// The cosines and sines of equal parts of an angle: `count` parts of `turn`, from `start`, and the end.
+fn directions(start: f64, turn: f64, count: u32) -> Vec<[f64; 2]> {
+    let at = |i: u32| start + turn * (f64::from(i) / f64::from(count));
+    (0..=count).map(at).map(|angle| [portable::cos(angle), portable::sin(angle)]).collect()
+}
+
 /// A surface laid out by coordinates that run from 0 to `cells`.
 struct Grid<'p> {
     on: &'p Patch,
     other: &'p Patch,
     other_from_on: Transform,
+    /// A box around the other piece, in its coordinates.
+    bounds: Bounds3,
     /// The range of z on a side.
     z: [f64; 2],
     /// How many cells each way.
     cells: [u32; 2],
+    /// Cosines and sines for half steps along u, and along v where that is an angle.
+    tables: [Vec<[f64; 2]>; 2],
     /// Heights this small are 0.
     zero: f64,
 }
@@ -88,52 +119,74 @@ impl<'p> Grid<'p> {
             Surface::Sphere { .. } => [16, 8],
             Surface::Side { thin, slope } => {
                 let radius = (thin + slope * z[1]).max(thin + slope * z[0]);
-                let [around, along] = [TAU * radius, z[1] - z[0]];
+                let [around, along] = [TAU * radius, (z[1] - z[0]) * (1.0 + slope * slope).sqrt()];
                 if around > along { [ratio(around, along), 8] } else { [8, ratio(along, around)] }
             }
             Surface::Torus { major, minor } => [ratio(major + minor, minor), 8],
         };
         let size = on.local_bounds().diagonal().length();
         let zero = ZERO * stretch(&other_from_on) * size;
-        Some(Self { on, other, other_from_on, z, cells, zero })
+        let bounds = other.local_bounds();
+        let mut grid = Self { on, other, other_from_on, bounds, z, cells, tables: [Vec::new(), Vec::new()], zero };
+        grid.tabulate();
+        Some(grid)
+    }
+
+    /// For the number of cells there is now.
+    fn tabulate(&mut self) {
+        let [along, up] = self.cells.map(|count| 2 * count);
+        let up = match self.on.surface {
+            Surface::Sphere { .. } => directions(-0.5 * PI, PI, up),
+            Surface::Torus { .. } => directions(0.0, TAU, up),
+            _ => Vec::new(),
+        };
+        self.tables = [directions(0.0, TAU, along), up];
     }
 
     /// The point at grid coordinates, in the coordinates of the surface it is on.
     fn local(&self, u: f64, v: f64) -> Vector3 {
         let [along, up] = [u / f64::from(self.cells[0]), v / f64::from(self.cells[1])];
-        let angle = TAU * along;
-        let (cos, sin) = (portable::cos(angle), portable::sin(angle));
-        match self.on.surface {
-            Surface::Plane => Vector3::ZERO,
-            Surface::Sphere { radius } => {
-                let latitude = PI * (up - 0.5);
-                let equator = portable::cos(latitude) * radius;
-                Vector3::new(equator * cos, equator * sin, portable::sin(latitude) * radius)
-            }
+        let direction = |angle: f64| [portable::cos(angle), portable::sin(angle)];
+        let inclination = match self.on.surface {
+            Surface::Sphere { .. } => direction(PI * (up - 0.5)),
+            Surface::Torus { .. } => direction(TAU * up),
+            _ => [0.0, 0.0],
+        };
+        self.laid_out(direction(TAU * along), inclination, up)
+    }
+
+    /// From the directions of both angles, and how far up it is on a side.
+    #[inline]
+    fn laid_out(&self, [cos, sin]: [f64; 2], [out, rise]: [f64; 2], up: f64) -> Vector3 {
+        let (axial, z) = match self.on.surface {
+            Surface::Plane => (0.0, 0.0),
+            Surface::Sphere { radius } => (radius * out, radius * rise),
             Surface::Side { thin, slope } => {
                 let z = self.z[0] + (self.z[1] - self.z[0]) * up;
-                let radius = thin + slope * z;
-                Vector3::new(radius * cos, radius * sin, z)
+                (thin + slope * z, z)
             }
-            Surface::Torus { major, minor } => {
-                let around = TAU * up;
-                let axial = major + minor * portable::cos(around);
-                Vector3::new(axial * cos, axial * sin, minor * portable::sin(around))
-            }
-        }
+            Surface::Torus { major, minor } => (major + minor * out, minor * rise),
+        };
+        Vector3::new(axial * cos, axial * sin, z)
     }
 
-    /// In the coordinates of the other surface.
-    fn there(&self, u: f64, v: f64) -> Vector3 {
-        self.other_from_on.point(Point3::ORIGIN + self.local(u, v)).to_vector()
+    /// The point at half steps of the grid, in the coordinates of the other surface.
+    #[inline]
+    fn there(&self, i: u32, j: u32) -> Vector3 {
+        let inclination = self.tables[1].get(j as usize).copied().unwrap_or_default();
+        let up = 0.5 * f64::from(j) / f64::from(self.cells[1]);
+        let local = self.laid_out(self.tables[0][i as usize], inclination, up);
+        self.other_from_on.point(Point3::ORIGIN + local).to_vector()
     }
 
+    /// The height over the other surface at any grid coordinates.
     fn height(&self, u: f64, v: f64) -> f64 {
-        self.other.surface.height(self.there(u, v))
+        let there = self.other_from_on.point(Point3::ORIGIN + self.local(u, v));
+        self.other.surface.height(there.to_vector())
     }
 
     fn is_above(&self, [i, j]: Corner) -> bool {
-        self.height(f64::from(i), f64::from(j)) > self.zero
+        self.other.surface.height(self.there(2 * i, 2 * j)) > self.zero
     }
 
     /// Brought back into the grid where it runs around.
@@ -142,43 +195,38 @@ impl<'p> Grid<'p> {
         [i % self.cells[0], if around { j % self.cells[1] } else { j }]
     }
 
-    /// How far the corners of a cell are from its middle, and that from the other surface.
-    fn reach_and_height(&self, [i, j]: Corner) -> (f64, f64) {
-        let [u, v] = [f64::from(i), f64::from(j)];
-        let middle = self.there(u + 0.5, v + 0.5);
+    /// How far the corners of a cell are from its middle, and at least how far that is from the other piece.
+    fn reach_and_distance(&self, [i, j]: Corner) -> (f64, f64) {
+        let (i, j) = (2 * i, 2 * j);
+        let middle = self.there(i + 1, j + 1);
         // Of a surface that bends, also the middles of the sides.
-        let around = [[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [0.0, 0.5], [1.0, 0.5], [0.0, 1.0], [0.5, 1.0], [1.0, 1.0]];
-        let reach = around.iter().map(|[du, dv]| (self.there(u + du, v + dv) - middle).length()).fold(0.0, f64::max);
-        (reach, self.other.surface.height(middle))
+        let around = [[0, 0], [1, 0], [2, 0], [0, 1], [2, 1], [0, 2], [1, 2], [2, 2]];
+        let squared = |[di, dj]: [u32; 2]| (self.there(i + di, j + dj) - middle).length_squared();
+        let reach = around.map(squared).into_iter().fold(0.0, f64::max).sqrt();
+        let beside = (self.bounds.min.0 - middle.0).max(middle.0 - self.bounds.max.0).max_element();
+        (reach, self.other.surface.height(middle).abs().max(beside))
     }
 
     /// The cells that the curve may pass through, after the grid was made fine enough.
     fn fine_cells(&mut self) -> Vec<Corner> {
         let all = (0..self.cells[0]).flat_map(|i| (0..self.cells[1]).map(move |j| [i, j]));
         let mut open: Vec<Corner> = all.collect();
-        let tight = match self.other.surface {
-            Surface::Plane => f64::INFINITY,
-            Surface::Sphere { radius } => radius,
-            Surface::Side { thin, slope } => match self.other.limits {
-                Limits::Length(length) => thin.max(0.25 * (thin + slope * length)),
-                _ => f64::INFINITY,
-            },
-            Surface::Torus { minor, .. } => minor,
-        };
+        let detail = DETAIL * tight(self.other) / stretch(&self.other.space_from_patch);
         for _ in 0..MAX_HALVINGS {
             let mut largest = 0.0_f64;
             open.retain(|&cell| {
-                let (reach, height) = self.reach_and_height(cell);
+                let (reach, distance) = self.reach_and_distance(cell);
                 // A margin for what bulges out between the points that were looked at.
-                let stays = height.abs() <= 1.25 * reach + self.zero;
+                let stays = distance <= 1.25 * reach + self.zero;
                 largest = largest.max(if stays { reach } else { 0.0 });
                 stays
             });
-            let is_fine = f64::from(self.cells[0].min(self.cells[1])) >= CELLS && largest <= DETAIL * tight;
+            let is_fine = f64::from(self.cells[0].min(self.cells[1])) >= CELLS && largest <= detail;
             if is_fine || open.is_empty() || open.len() * 4 > MAX_CELLS {
                 break;
             }
             self.cells = self.cells.map(|count| 2 * count);
+            self.tabulate();
             open = open
                 .iter()
                 .flat_map(|&[i, j]| [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[a, b]| [2 * i + a, 2 * j + b]))
@@ -209,7 +257,7 @@ impl<'p> Grid<'p> {
                 [a, b] => join(edges[a], edges[b]),
                 [_, _, _, _] => {
                     // A saddle: the middle tells which corners belong together.
-                    let middle = self.height(f64::from(i) + 0.5, f64::from(j) + 0.5) > self.zero;
+                    let middle = self.other.surface.height(self.there(2 * i + 1, 2 * j + 1)) > self.zero;
                     let pairs = if middle == above[0] { [(0, 1), (2, 3)] } else { [(3, 0), (1, 2)] };
                     for (a, b) in pairs {
                         join(edges[a], edges[b]);
@@ -287,20 +335,20 @@ impl<'p> Grid<'p> {
 }
 
 /// About how much longer a map makes lengths.
-fn stretch(map: &Transform) -> f64 {
+pub(super) fn stretch(map: &Transform) -> f64 {
     let matrix = map.affine().matrix3;
     matrix.x_axis.length().max(matrix.y_axis.length()).max(matrix.z_axis.length())
 }
 
 /// The points with others between where a chord is too far from the curve.
-fn refined(onto: &[Patch; 2], points: Vec<Point3>, tolerance: &dyn Fn(Point3) -> f64) -> Vec<Point3> {
+fn refined(onto: &[Patch; 2], points: &[Point3], tolerance: &dyn Fn(Point3) -> f64) -> Vec<Point3> {
     let mut fine: Vec<Point3> = points.first().copied().into_iter().collect();
     for pair in points.windows(2) {
         let mut open = vec![(pair[0], pair[1], 0)];
         while let Some((from, to, halvings)) = open.pop() {
             let middle = from.lerp(to, 0.5);
             let on_curve = project(onto, middle, to - from);
-            let bound = 0.3 * tolerance(middle);
+            let bound = 0.5 * tolerance(middle);
             // A point that went astray says nothing.
             let sag = on_curve.map(|p| (p, p.distance(middle))).filter(|&(_, sag)| sag < from.distance(to));
             match sag {
@@ -332,7 +380,7 @@ fn thinned(points: &[Point3], tolerance: &dyn Fn(Point3) -> f64) -> Vec<Point3> 
         };
         let farthest = (from + 1..to).map(|i| (distance(points[i]), i)).max_by(|a, b| a.0.total_cmp(&b.0));
         if let Some((far, i)) = farthest
-            && (far > 0.6 * tolerance(points[i]) || is_closed && to - from == last)
+            && (far > 0.5 * tolerance(points[i]) || is_closed && to - from == last)
         {
             is_kept[i] = true;
             open.extend([(from, i), (i, to)]);

@@ -4,6 +4,7 @@ use proptest::prelude::*;
 use snell_math::{Homogeneous3, Point3};
 
 use super::super::patch::{Patch, Surface, patches};
+use super::super::trace::stretch;
 use super::super::{Curve, Feature, FeatureKind};
 use super::{
     KINDS, distance_to_chords, is_round, of_shape, random_eye, random_placement, random_shape, samples, surface_point,
@@ -23,12 +24,12 @@ fn errors(patch: &Patch, contours: &[&Curve], eye: Homogeneous3) -> (f64, f64) {
         let size = patch.size().max(p.max_abs());
         let local = patch.local(p);
         // A tip has no normal, and near it the normal is worth as much less.
-        let from_axis = (local.x() * local.x() + local.y() * local.y()).sqrt() * patch.stretch();
+        let from_axis = (local.x() * local.x() + local.y() * local.y()).sqrt() * stretch(&patch.space_from_patch);
         if from_axis < 1e-3 * size && matches!(patch.surface, Surface::Side { .. }) {
             continue;
         }
         worst.0 = worst.0.max(cosine(patch, p, eye).abs());
-        worst.1 = worst.1.max(patch.height(p).abs() * patch.stretch() / size);
+        worst.1 = worst.1.max(patch.height(p).abs() * stretch(&patch.space_from_patch) / size);
     }
     worst
 }
@@ -110,7 +111,7 @@ proptest! {
         for feature in features.iter().filter(|feature| feature.kind == FeatureKind::Parameter) {
             let patch = feature.facing.as_ref().expect("on a surface").0;
             for p in samples(&feature.curve, 3) {
-                prop_assert!(patch.height(p).abs() < 1e-12 * (patch.size() + p.max_abs()) / patch.stretch());
+                prop_assert!(patch.height(p).abs() < 1e-12 * (patch.size() + p.max_abs()) / stretch(&patch.space_from_patch));
                 let normal = feature.outward(p).expect("a regular point");
                 prop_assert!((normal.length() - 1.0).abs() < 1e-12);
             }

@@ -2,6 +2,7 @@
 
 mod contours;
 mod degenerate;
+mod meetings;
 mod pictures;
 mod solids;
 
