@@ -9,8 +9,8 @@ use hayro::{PixmapSettings, RenderCache, RenderSettings};
 use proptest::prelude::*;
 use resvg::{tiny_skia, usvg};
 use snell::vector::{
-    Arc, Group, Horizontal, Item, Page, Path, Piece, Stroke, Subpath, Text, VectorError, Vertical, arrow_head, encode_pdf,
-    encode_svg, join, rasterize,
+    Arc, Group, Horizontal, Item, Page, Path, Piece, Stroke, Subpath, Text, VectorError, Vertical, arrow_head,
+    encode_pdf, encode_svg, join, rasterize,
 };
 
 const WIDTH: u32 = 480;
@@ -44,7 +44,8 @@ fn page(moved: f64) -> Page {
         arc([45.0, 30.0], 2.0, 0.2, 0.2 + 1.97 * PI),
         arc([65.0, 30.0], 0.0, 3.0, 3.0 - 0.999 * PI),
     ];
-    let ellipses = vec![Subpath::ellipse([88.0, 30.0], [9.0, 4.0], 0.7), Subpath::ellipse([107.0, 30.0], [6.0, 6.0], 0.0)];
+    let ellipses =
+        vec![Subpath::ellipse([88.0, 30.0], [9.0, 4.0], 0.7), Subpath::ellipse([107.0, 30.0], [6.0, 6.0], 0.0)];
     let mut triangle = Subpath::polyline(&[[5.0, 55.0], [20.0, 42.0], [30.0, 57.0]]);
     triangle.closed = true;
     let text = |markup: &str, at, rotation, halo| {
@@ -67,10 +68,16 @@ fn page(moved: f64) -> Page {
         backdrop: None,
         groups: vec![
             group("lines", vec![path(vec![zigzag, wave], stroke(0.8, &[]), None)]),
-            group("lines", vec![path(arcs, stroke(0.6, &[]), None), path(ellipses, stroke(0.6, &[2.0, 1.5]), None)]),
+            group("lines", vec![path(arcs, stroke(0.6, &[]), None), path(ellipses, stroke(0.6, &[2.0]), None)]),
             group("<fill> \"&\" 'x'\u{7}", vec![path(vec![triangle], stroke(0.5, &[]), Some([220, 180, 40]))]),
             group("", vec![Item::Path(arrow_head([60.0, 50.0], [1.0, 0.3], 6.0, [200, 0, 0]))]),
-            group("文字", vec![text("*M* = *M*_o *M*_{pv}^2 − π/2", [80.0, 58.0], 0.0, true), text("up", [110.0, 60.0], 1.2, false)]),
+            group(
+                "文字",
+                vec![
+                    text("*M* = *M*_o *M*_{pv}^2 − π/2", [80.0, 58.0], 0.0, true),
+                    text("up", [110.0, 60.0], 1.2, false),
+                ],
+            ),
         ],
     }
 }
@@ -85,7 +92,10 @@ fn ours(page: &Page) -> Grey {
     let picture = rasterize(page, WIDTH).expect("pixels");
     let (width, height) = picture.size();
     let value = |x: u32, y: u32| (picture.code(x, y).into_iter().sum::<u16>() / 3) as u8;
-    Grey { size: (width, height), values: (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| value(x, y)).collect() }
+    Grey {
+        size: (width, height),
+        values: (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| value(x, y)).collect(),
+    }
 }
 
 fn seen_by_resvg(page: &Page) -> Grey {
@@ -95,7 +105,9 @@ fn seen_by_resvg(page: &Page) -> Grey {
     let (width, height) = (WIDTH, (tree.size().height() * scale).round() as u32);
     let mut pixmap = tiny_skia::Pixmap::new(width, height).expect("pixels");
     resvg::render(&tree, tiny_skia::Transform::from_scale(scale, scale), &mut pixmap.as_mut());
-    let grey = |p: &tiny_skia::PremultipliedColorU8| ((u16::from(p.red()) + u16::from(p.green()) + u16::from(p.blue())) / 3) as u8;
+    let grey = |p: &tiny_skia::PremultipliedColorU8| {
+        ((u16::from(p.red()) + u16::from(p.green()) + u16::from(p.blue())) / 3) as u8
+    };
     Grey { size: (width, height), values: pixmap.pixels().iter().map(grey).collect() }
 }
 
@@ -106,11 +118,17 @@ fn seen_by_hayro(page: &Page) -> Grey {
     let points = page.width * 72.0 / 25.4;
     let scale = (f64::from(WIDTH) + 0.01) as f32 / points as f32;
     let settings = PixmapSettings { x_scale: scale, y_scale: scale, bg_color: WHITE };
-    let pixmap =
-        hayro::render(&pages[0], &RenderCache::new(), &InterpreterSettings::default(), &RenderSettings::default(), &settings);
+    let pixmap = hayro::render(
+        &pages[0],
+        &RenderCache::new(),
+        &InterpreterSettings::default(),
+        &RenderSettings::default(),
+        &settings,
+    );
     let size = (u32::from(pixmap.width()), u32::from(pixmap.height()));
     let bytes = pixmap.data_as_u8_slice();
-    let values = bytes.chunks_exact(4).map(|p| ((u16::from(p[0]) + u16::from(p[1]) + u16::from(p[2])) / 3) as u8).collect();
+    let values =
+        bytes.chunks_exact(4).map(|p| ((u16::from(p[0]) + u16::from(p[1]) + u16::from(p[2])) / 3) as u8).collect();
     Grey { size, values }
 }
 

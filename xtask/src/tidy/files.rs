@@ -11,6 +11,8 @@ const LONG: usize = 500;
 const LARGEST_BINARY: u64 = 1 << 20;
 /// A reference picture may have so many bytes: there will be many, and they change.
 const LARGEST_GOLDEN: u64 = 64 << 10;
+/// And a reference drawing, which is text and packs well.
+const LARGEST_GOLDEN_DRAWING: u64 = 128 << 10;
 
 /// Every Rust file begins with a line that says what it is.
 pub fn first_line_says_what_it_is(tree: &Tree, report: &mut Report) {
@@ -38,6 +40,7 @@ pub fn no_file_is_too_long(tree: &Tree, report: &mut Report) {
 pub fn no_file_is_too_big(tree: &Tree, report: &mut Report) {
     for file in &tree.files {
         let limit = match file.content {
+            _ if is_below(&file.path, "goldens/drawings") => LARGEST_GOLDEN_DRAWING,
             _ if is_below(&file.path, "goldens") => LARGEST_GOLDEN,
             Content::Binary => LARGEST_BINARY,
             _ => continue,

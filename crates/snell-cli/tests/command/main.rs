@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod draw;
 mod mistakes;
 mod output;
 mod render;
@@ -10,3 +11,4 @@ mod scenes;
 mod signals;
 mod streams;
 mod support;
+mod view;

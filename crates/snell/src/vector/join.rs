@@ -30,10 +30,13 @@ pub fn join(subpaths: Vec<Subpath>, tolerance: f64) -> Vec<Subpath> {
     ordered(joined)
 }
 
+/// A node's number and its place.
+type Node = (usize, [f64; 2]);
+
 /// Places as numbers: those nearer than the tolerance are one.
 struct Nodes {
     tolerance: f64,
-    cells: BTreeMap<(i64, i64), Vec<(usize, [f64; 2])>>,
+    cells: BTreeMap<(i64, i64), Vec<Node>>,
     count: usize,
 }
 
@@ -203,7 +206,7 @@ fn united(start: [f64; 2], first: &Piece, second: &Piece, tolerance: f64) -> Opt
                 && (a.rotation - b.rotation).abs() < 1e-9;
             let (sa, sb) = (a.end - a.start, b.end - b.start);
             let whole = (sa + sb).abs() <= TAU + 1e-6;
-            (same && sa * sb > 0.0 && whole).then(|| Piece::Arc(Arc { end: a.end + sb, ..*a }))
+            (same && sa * sb > 0.0 && whole).then_some(Piece::Arc(Arc { end: a.end + sb, ..*a }))
         }
         _ => None,
     }

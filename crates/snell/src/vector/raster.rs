@@ -71,7 +71,9 @@ fn draw_path(pixmap: &mut Pixmap, path: &Path, scale: f64) {
     if let Some(stroke) = &path.stroke {
         let [r, g, b] = stroke.color;
         paint.set_color_rgba8(r, g, b, 255);
-        let dashes: Vec<f32> = stroke.dashes.iter().map(|dash| f(*dash)).collect();
+        // As in an SVG, an odd list is gone through twice.
+        let rounds = 1 + stroke.dashes.len() % 2;
+        let dashes: Vec<f32> = std::iter::repeat_n(&stroke.dashes, rounds).flatten().map(|dash| f(*dash)).collect();
         let stroke = tiny_skia::Stroke {
             width: f(stroke.width),
             line_cap: LineCap::Round,

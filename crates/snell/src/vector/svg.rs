@@ -9,6 +9,9 @@ use base64::engine::general_purpose::STANDARD;
 use super::text::outlines;
 use super::{Arc, Group, Item, Page, Path, Piece, Subpath, VectorError};
 
+/// The largest part of an ellipse that one command stands for, in radians.
+const MOST_PER_ARC: f64 = 0.9 * std::f64::consts::PI;
+
 /// Writes a page as SVG; the same page gives the same bytes.
 ///
 /// ```
@@ -73,7 +76,7 @@ fn write_group(svg: &mut String, group: &Group, ids: &mut BTreeSet<String>) {
             Item::Path(path) => write_path(svg, path),
             Item::Text(text) => {
                 put(svg, format_args!("<g aria-label=\"{}\">\n", escaped(&super::text::plain(&text.markup))));
-                outlines(text).iter().for_each(|path| write_path(svg, path));
+                outlines(text).iter().for_each(|path| write_letters(svg, path));
                 svg.push_str("</g>\n");
             }
         }
@@ -122,6 +125,36 @@ fn write_path(svg: &mut String, path: &Path) {
     }
 }
 
+/// Filled outlines of letters, of which there are many points: by steps from point to point, in whole micrometres, so that rounding
+/// does not add up.
+fn write_letters(svg: &mut String, path: &Path) {
+    let Some(fill) = path.fill else { return };
+    let mut data = String::new();
+    for subpath in &path.subpaths {
+        let micrometres = |p: [f64; 2]| p.map(|c| (c * 1000.0).round());
+        let mut at = micrometres(subpath.start);
+        put(&mut data, format_args!("M{} {}", number(at[0] / 1000.0), number(at[1] / 1000.0)));
+        let mut step = |command: char, points: &[[f64; 2]]| {
+            data.push(command);
+            let mut last = at;
+            for (index, p) in points.iter().enumerate() {
+                last = micrometres(*p);
+                let [x, y] = [0, 1].map(|k| number((last[k] - at[k]) / 1000.0));
+                put(&mut data, format_args!("{}{x} {y}", if index > 0 { " " } else { "" }));
+            }
+            at = last;
+        };
+        for piece in subpath.without_arcs() {
+            match piece {
+                Piece::Cubic { first, second, to } => step('c', &[first, second, to]),
+                other => step('l', &[other.end()]),
+            }
+        }
+        data.push_str("z\n");
+    }
+    put(svg, format_args!("<path fill=\"{}\" d=\"{}\"/>\n", color(fill), data.trim_end()));
+}
+
 fn whole_ellipse(subpath: &Subpath) -> Option<Arc> {
     match subpath.pieces.as_slice() {
         [Piece::Arc(arc)] if arc.is_full() => Some(*arc),
@@ -159,22 +192,20 @@ fn write_subpath(data: &mut String, subpath: &Subpath) {
     data.push_str(if subpath.closed { "Z\n" } else { "\n" });
 }
 
-/// An arc by its end; one that is almost the whole ellipse in two, since its ends alone would not tell it.
+/// An arc by its ends. One of half a turn or more is written in parts: near half a turn the ends hardly tell where its middle is,
+/// and of a whole turn they do not tell it at all.
 fn write_arc(data: &mut String, arc: &Arc) {
     let swept = arc.end - arc.start;
     let [rx, ry] = arc.radii.map(number);
     let turn = number(snell_math::portable::degrees(arc.rotation));
-    let mut to = |end: f64, swept: f64| {
+    let sweep = u8::from(swept > 0.0);
+    let parts = (swept.abs() / MOST_PER_ARC).ceil().max(1.0);
+    let mut part = 1.0;
+    while part <= parts {
+        let end = if part == parts { arc.end } else { arc.start + swept * part / parts };
         let [x, y] = arc.point(end).map(number);
-        let large = u8::from(swept.abs() > std::f64::consts::PI);
-        let sweep = u8::from(swept > 0.0);
-        put(data, format_args!("A{rx} {ry} {turn} {large} {sweep} {x} {y}"));
-    };
-    if swept.abs() > 1.9 * std::f64::consts::PI {
-        to(arc.start + 0.5 * swept, 0.5 * swept);
-        to(arc.end, 0.5 * swept);
-    } else {
-        to(arc.end, swept);
+        put(data, format_args!("A{rx} {ry} {turn} 0 {sweep} {x} {y}"));
+        part += 1.0;
     }
 }
 

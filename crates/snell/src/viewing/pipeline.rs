@@ -92,11 +92,12 @@ impl Pipeline {
     ) -> Result<Self, ViewingError> {
         let [nx, ny] = pixels.map(f64::from);
         let pixel = pixel_from_canonical(nx, ny)?;
-        let canonical = canonical_from_volume(volume)?;
+        // First, since a window that was measured on a wrong plane is wrong too.
         let perspective = match projection {
             Projection::Perspective => perspective(volume.near, volume.far)?,
             Projection::Orthographic => Matrix4::IDENTITY,
         };
+        let canonical = canonical_from_volume(volume)?;
         let view = view_from_axes(eye, axes);
         Ok(Self { projection, volume: *volume, pixels, view, perspective, canonical, pixel })
     }

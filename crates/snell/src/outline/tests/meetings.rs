@@ -116,7 +116,7 @@ fn small_bodies_on_large_ones_are_not_lost() {
     for (shape, expected) in large.iter().zip([1, 0, 2]) {
         let first = Body { form: Form::Shape(shape), space_from_body: None };
         let second = Body { form: Form::Shape(&small), space_from_body: Some(&stretch) };
-        let tolerance: &dyn Fn(Point3) -> f64 = &|_| 1e-6;
+        let tolerance: &(dyn Fn(Point3) -> f64 + Sync) = &|_| 1e-6;
         let options = OutlineOptions { parameter_lines: 0, tolerance };
         let found = intersections(&first, &second, &options);
         assert_eq!(found.len(), expected, "{shape:?}");
