@@ -10,9 +10,12 @@ use super::screen::Screen;
 use crate::geometry::{Form, WorldSurface};
 use crate::outline::{self, Body, Curve, Feature, FeatureKind, OutlineOptions};
 use crate::shape::triangle_mesh::{EdgeFaces, TriangleMesh};
+use crate::viewing::Side;
 
 /// Bodies are looked at for where they run through each other only where there are at most so many pairs of them.
-const MOST_PAIRS: usize = 20_000;
+const MOST_PAIRS: usize = 10_000;
+/// What two boxes have in common is worth a look only where it is larger than this in the picture, in pixels.
+const WORTH: f64 = 2.0;
 /// A mesh is cut by another body where at most so many of its triangles are in that one's box.
 const MOST_TRIANGLES: usize = 400_000;
 /// Triangles are halved until their sides are shorter than this many pixels, or than this share of the other body.
@@ -49,7 +52,7 @@ pub fn meetings(
         };
         features.into_iter().map(|feature| (a, feature)).collect()
     };
-    meeting_pairs(surfaces).into_par_iter().flat_map_iter(features).collect()
+    meeting_pairs(surfaces, screen).into_par_iter().flat_map_iter(features).collect()
 }
 
 /// A shape or a solid as `outline` takes it.
@@ -62,8 +65,8 @@ pub fn body<'s>(surface: &'s WorldSurface<'_>) -> Option<Body<'s>> {
     Some(Body { form, space_from_body: surface.world_from_own.as_ref() })
 }
 
-/// The pairs of surfaces whose boxes overlap: found by a sweep along x. None at all where there are too many.
-fn meeting_pairs(surfaces: &[WorldSurface<'_>]) -> Vec<(usize, usize)> {
+/// The pairs of surfaces whose boxes overlap where it can be seen: found by a sweep along x. None at all where there are too many.
+fn meeting_pairs(surfaces: &[WorldSurface<'_>], screen: &Screen<'_>) -> Vec<(usize, usize)> {
     let mut order: Vec<usize> = (0..surfaces.len()).collect();
     order.sort_by(|&a, &b| surfaces[a].bounds.min.x().total_cmp(&surfaces[b].bounds.min.x()).then(a.cmp(&b)));
     let mut pairs = Vec::new();
@@ -72,7 +75,8 @@ fn meeting_pairs(surfaces: &[WorldSurface<'_>]) -> Vec<(usize, usize)> {
         let bounds = &surfaces[index].bounds;
         open.retain(|&other| surfaces[other].bounds.max.x() >= bounds.min.x());
         for &other in &open {
-            if !surfaces[other].bounds.intersection(bounds).is_empty() {
+            let common = surfaces[other].bounds.intersection(bounds);
+            if !common.is_empty() && is_worth(&common, screen) {
                 pairs.push((index.min(other), index.max(other)));
             }
         }
@@ -83,6 +87,20 @@ fn meeting_pairs(surfaces: &[WorldSurface<'_>]) -> Vec<(usize, usize)> {
     }
     pairs.sort_unstable();
     pairs
+}
+
+/// Whether a box is in the picture and large enough there.
+fn is_worth(bounds: &Bounds3, screen: &Screen<'_>) -> bool {
+    if !bounds.is_finite() {
+        return true;
+    }
+    let clip: Vec<Homogeneous3> = (0..8).map(|corner| screen.clip(bounds.corner(corner).into())).collect();
+    let is_beyond = |side: &Side| clip.iter().all(|p| side.distance(*p) < 0.0);
+    let across = bounds.diagonal().length();
+    // Of what reaches behind the eye the size says nothing.
+    let is_before = clip.iter().all(|p| p.h() > 0.0);
+    let nearest = (0..8).map(|corner| screen.pixel_length(bounds.corner(corner))).fold(f64::INFINITY, f64::min);
+    !Side::ALL.iter().filter(|side| **side != Side::Far).any(is_beyond) && (!is_before || across > WORTH * nearest)
 }
 
 /// Whether a point is inside of a body.

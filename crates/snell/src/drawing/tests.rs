@@ -54,9 +54,12 @@ fn pieces(page: &Page) -> Vec<Piece> {
 /// What the picture shows at each pixel's centre: whose surface, its point and its normal.
 type Seen = Option<((u32, u64), Point3, Vector3)>;
 
+/// Both ends of a straight piece, in the raster.
+type Ends = [[f64; 2]; 2];
+
 /// The places between pixels at which the rendering has an edge, each as the centres of both pixels; and those of them at which the
 /// object changes.
-fn edges(scene: &CompiledScene, camera: &Camera) -> (Vec<[[f64; 2]; 2]>, Vec<[[f64; 2]; 2]>) {
+fn edges(scene: &CompiledScene, camera: &Camera) -> (Vec<Ends>, Vec<Ends>) {
     let [width, height] = camera.pixels();
     let mut scratch = QueryScratch::default();
     let mut look = |x: u32, y: u32| -> Seen {
