@@ -1,6 +1,7 @@
 //! `snell check`: reads and compiles scenes, and tells all that is wrong with them.
 
 use snell::compile::CompiledScene;
+use snell::drawing::{self, DrawingSettings};
 use snell::render::RenderSettings;
 use snell::scene::{Diagnostic, Diagnostics};
 
@@ -35,6 +36,10 @@ fn check(name: &str) -> Result<Diagnostics, Failure> {
     match CompiledScene::build(&scene) {
         Ok(compiled) => {
             if let Err(error) = RenderSettings::from(&scene.settings).camera(&compiled) {
+                diagnostics.push(Diagnostic::error(error.to_string()));
+            }
+            // What only a drawing asks of its cameras and windows.
+            if let Err(error) = drawing::check(&compiled, &DrawingSettings::new(&scene)) {
                 diagnostics.push(Diagnostic::error(error.to_string()));
             }
             diagnostics.list.extend(compiled.warnings);

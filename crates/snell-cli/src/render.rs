@@ -10,7 +10,7 @@ use snell::scene::{Diagnostic, Diagnostics, Scene};
 use crate::arguments::{Preset, RenderArguments};
 use crate::assets::FileAssets;
 use crate::builtin;
-use crate::console::{say, write_stdout};
+use crate::console::{quoted, say, write_stdout};
 use crate::diagnostics;
 use crate::failure::{FINE, Failure};
 use crate::interrupt::Interrupt;
@@ -95,6 +95,12 @@ fn read(arguments: &RenderArguments, place: &Place, assets: &FileAssets) -> Resu
     let Some(mut scene) = scene else { return Err(Failure::scene(told)) };
     if arguments.preset == Some(Preset::Spd) {
         nff::spd_rules(&mut scene);
+    }
+    if scene.objects.is_empty() && !scene.plots.is_empty() {
+        let name = place.name();
+        let message = format!("{} has plots and no objects: there is nothing to render", quoted(name));
+        let help = format!("`snell draw {name}` draws its plots");
+        return Err(Failure::input(Diagnostic::error(message).help(help)));
     }
     settings::apply(arguments, &mut scene.settings)?;
     Ok((scene, told))

@@ -177,3 +177,12 @@ fn colours_are_for_terminals() {
     assert!(said(&[("TERM", "xterm"), ("CLICOLOR_FORCE", "1")]).contains('\x1b'));
     assert!(!said(&[("TERM", "xterm"), ("CLICOLOR_FORCE", "1"), ("NO_COLOR", "1")]).contains('\x1b'));
 }
+
+#[test]
+fn plots_are_not_rendered_to_a_black_picture() {
+    let folder = Folder::new();
+    let run = folder.run("render cosine-plot");
+    assert_eq!(run.code, Some(1), "{run:?}");
+    assert!(run.stderr.contains("`snell draw cosine-plot` draws its plots"), "{}", run.stderr);
+    assert!(folder.names().is_empty());
+}

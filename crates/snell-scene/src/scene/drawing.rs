@@ -150,7 +150,7 @@ pub struct PointMark {
     /// From the point to the label on the page, mm, x to the right, y up.
     pub offset: [f64; 2],
     /// It is not drawn where objects hide it; else always.
-    pub hidden: bool,
+    pub can_be_hidden: bool,
     /// Diameter of the dot, mm.
     pub size: f64,
 }
@@ -171,7 +171,7 @@ pub struct LineMark {
     /// mm; that of the drawing where it has none.
     pub width: Option<f64>,
     /// It is treated as a line of the scene, which objects hide; else always drawn in full.
-    pub hidden: bool,
+    pub can_be_hidden: bool,
     /// Where along it the label is, from 0 to 1.
     pub label_at: f64,
     /// From there to the label on the page, mm, x to the right, y up.
@@ -198,7 +198,7 @@ pub struct GridMark {
     /// mm; half that of the drawing where it has none.
     pub width: Option<f64>,
     /// Objects hide it; else it is always drawn in full.
-    pub hidden: bool,
+    pub can_be_hidden: bool,
 }
 
 /// A camera that is drawn: seen by the scene's own camera.

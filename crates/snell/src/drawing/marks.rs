@@ -149,7 +149,7 @@ pub fn all(scene: &CompiledScene, settings: &DrawingSettings, bounds: &Bounds3) 
         let mark =
             ruled(Mark::new(name, code(grid.color), grid.width.unwrap_or(thin)), grid.corner, grid.edges, grid.count);
         let far = grid.corner + grid.edges[0] + grid.edges[1];
-        marks.push(mark.hidden_by_things(grid.hidden).label(grid.label.as_deref(), far, [1.2, 1.2]));
+        marks.push(mark.hidden_by_things(grid.can_be_hidden).label(grid.label.as_deref(), far, [1.2, 1.2]));
     }
     let mut windows = Vec::new();
     for camera in &drawing.cameras {
@@ -162,7 +162,7 @@ pub fn all(scene: &CompiledScene, settings: &DrawingSettings, bounds: &Bounds3) 
         let color = code(line.color);
         let mut mark =
             Mark::new(line.label.as_deref().unwrap_or("line"), color, line.width.unwrap_or(drawing.line_width));
-        (mark.arrow, mark.dashed, mark.can_be_hidden) = (line.arrow, line.dashed, line.hidden);
+        (mark.arrow, mark.dashed, mark.can_be_hidden) = (line.arrow, line.dashed, line.can_be_hidden);
         let mark = mark.chain(&line.points);
         let steps = (0..=line.steps).map(|step| f64::from(step) / f64::from(line.steps.max(1)));
         let places: Vec<Point3> =
@@ -189,7 +189,7 @@ pub fn all(scene: &CompiledScene, settings: &DrawingSettings, bounds: &Bounds3) 
     for point in &drawing.points {
         let mut mark = Mark::new(point.label.as_deref().unwrap_or("point"), code(point.color), drawing.line_width);
         mark.dots.push((point.position, point.size));
-        if point.hidden {
+        if point.can_be_hidden {
             // Without length, but it is asked whether it is seen.
             mark = mark.line(point.position, point.position).hidden_by_things(true);
         }

@@ -130,6 +130,21 @@ pub fn draw(scene: &CompiledScene, settings: &DrawingSettings) -> Result<Page, V
     Ok(page)
 }
 
+/// Whether a scene's drawn cameras and plots are sound, without drawing it.
+///
+/// # Errors
+/// [`ViewingError`], where a drawn camera or a plot's window is degenerate.
+pub fn check(scene: &CompiledScene, settings: &DrawingSettings) -> Result<(), ViewingError> {
+    let bounds = lines::finite_bounds(&scene.geometry);
+    let drawing = scene::Drawing {
+        cameras: settings.drawing.cameras.iter().map(|c| scene::CameraMark { picture: false, ..c.clone() }).collect(),
+        ..settings.drawing.clone()
+    };
+    marks::all(scene, &DrawingSettings { drawing, ..settings.clone() }, &bounds)?;
+    let page = new_page(settings);
+    settings.plots.iter().try_for_each(|plot| plot_groups(plot, page.width, page.height).map(drop))
+}
+
 /// The planes n and f that a camera's matrices are shown with: its own ones, or else such that they hold the scene.
 pub fn shown_planes(scene: &CompiledScene, camera: &Camera) -> [f64; 2] {
     screen::shown_planes(camera, &lines::finite_bounds(&scene.geometry))

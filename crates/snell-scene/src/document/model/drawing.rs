@@ -151,7 +151,7 @@ pub struct PointMark {
     pub offset: [f64; 2],
     /// Objects may hide it. Otherwise it is always drawn.
     #[serde(default)]
-    pub hidden: bool,
+    pub can_be_hidden: bool,
     /// The diameter of the dot.
     #[serde(default = "dot")]
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100, "x-unit" = "mm"))]
@@ -183,7 +183,7 @@ pub struct LineMark {
     pub width: Option<f64>,
     /// It is a line of the scene like those of objects: what hides it hides it. Otherwise it is always drawn in full.
     #[serde(default)]
-    pub hidden: bool,
+    pub can_be_hidden: bool,
     /// Where along it the label is.
     #[serde(default = "middle")]
     #[schemars(range(min = 0, max = 1))]
@@ -226,7 +226,7 @@ pub struct GridMark {
     pub width: Option<f64>,
     /// Objects may hide it. Otherwise it is always drawn in full.
     #[serde(default)]
-    pub hidden: bool,
+    pub can_be_hidden: bool,
 }
 
 /// A camera that is drawn: its eye, axes and view volume, as the scene's own camera sees them.

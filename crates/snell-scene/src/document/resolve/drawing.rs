@@ -124,7 +124,7 @@ impl Resolver<'_> {
             dashed: line.dashed,
             color: line.color.0,
             width: line.width,
-            hidden: line.hidden,
+            can_be_hidden: line.can_be_hidden,
             label_at: line.label_at,
             offset: line.offset,
             project_to,
@@ -148,7 +148,7 @@ impl Resolver<'_> {
             count: grid.count,
             color: grid.color.0,
             width: grid.width,
-            hidden: grid.hidden,
+            can_be_hidden: grid.can_be_hidden,
         }
     }
 
@@ -221,7 +221,7 @@ fn point(point: &model::PointMark) -> scene::PointMark {
         position: point.position.into(),
         color: point.color.0,
         offset: point.offset,
-        hidden: point.hidden,
+        can_be_hidden: point.can_be_hidden,
         size: point.size,
     }
 }
