@@ -101,7 +101,7 @@ pub enum StrokeBy {
     Uniform,
     /// Each object has a colour of its own.
     Object,
-    /// By the colour of the material.
+    /// Each material has a colour of its own, which tells it from others.
     Material,
     /// The farther, the lighter.
     Depth,
