@@ -318,8 +318,12 @@ fn middle(path: &Subpath) -> [f64; 2] {
 }
 
 fn end_direction(path: &Subpath) -> [f64; 2] {
-    let turned = start_direction(&path.reversed());
-    [-turned[0], -turned[1]]
+    // Of the last piece alone: chains may be long, and are asked at each of their pieces.
+    let Some((last, before)) = path.pieces.split_last() else { return [0.0; 2] };
+    let start = before.last().map_or(path.start, Piece::end);
+    let turned = Subpath { start, pieces: vec![*last], closed: false }.reversed();
+    let [x, y] = start_direction(&turned);
+    [-x, -y]
 }
 
 /// The unit vector along which a subpath begins.

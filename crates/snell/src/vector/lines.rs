@@ -13,7 +13,7 @@ impl Arc {
     /// Cubic Bézier curves that are this arc but for 1e-7 of its larger radius: for each both control points and the end.
     pub fn cubics(&self) -> Vec<[[f64; 2]; 3]> {
         let swept = self.end - self.start;
-        let count = (swept.abs() / MOST_PER_CUBIC).ceil().max(1.0);
+        let count = (swept.abs() / MOST_PER_CUBIC).ceil().clamp(1.0, 64.0);
         let step = swept / count;
         // Both ends and tangents agree, and the middle: Riškus, Information Technology and Control 35(4), 2006.
         let reach = 4.0 / 3.0 * portable::tan(0.25 * step);
@@ -147,10 +147,17 @@ impl Page {
         }
         let is_finite = |item: &Item| match item {
             Item::Text(text) => [text.at[0], text.at[1], text.size, text.rotation].iter().all(|n| n.is_finite()),
-            Item::Path(path) => path.subpaths.iter().all(|subpath| {
-                subpath.start.iter().all(|c| c.is_finite()) && subpath.pieces.iter().all(Piece::is_finite)
-            }),
+            Item::Path(path) => {
+                let stroke = path.stroke.iter().flat_map(|stroke| stroke.dashes.iter().chain([&stroke.width]));
+                stroke.into_iter().all(|length| length.is_finite())
+                    && path.subpaths.iter().all(|subpath| {
+                        subpath.start.iter().all(|c| c.is_finite()) && subpath.pieces.iter().all(Piece::is_finite)
+                    })
+            }
         };
+        if self.backdrop.as_ref().is_some_and(|backdrop| !backdrop.place.iter().all(|c| c.is_finite())) {
+            return Err(VectorError::NotFinite { group: "backdrop".to_owned() });
+        }
         match self.groups.iter().find(|group| !group.items.iter().all(is_finite)) {
             Some(group) => Err(VectorError::NotFinite { group: group.name.clone() }),
             None => Ok(()),
