@@ -4,7 +4,7 @@
 //! rest can still be examined for mistakes of meaning, and all are told at once.
 
 mod names;
-mod number;
+pub(super) mod number;
 mod say;
 mod table;
 mod text;

@@ -8,7 +8,7 @@ use crate::diagnostic::Diagnostic;
 /// The largest number of a scene: squares and products of a few still fit into `f64`, and any one into `f32`.
 const LARGEST: f64 = 1e30;
 /// The smallest number above 0 where 0 itself is not possible.
-const SMALLEST: f64 = 1e-30;
+pub(in crate::document) const SMALLEST: f64 = 1e-30;
 
 impl<'a> Checker<'a> {
     /// A number, of which `part` and `form` say the range.
@@ -86,7 +86,7 @@ impl Range {
 }
 
 /// A number in a message: as people write it.
-fn show(number: f64) -> String {
+pub(in crate::document) fn show(number: f64) -> String {
     if number != 0.0 && number.is_finite() && !(1e-4..1e16).contains(&number.abs()) {
         format!("{number:e}")
     } else {

@@ -1,11 +1,13 @@
 //! How the scene is drawn as lines, and the marks in a drawing.
 
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 use snell_math::{Point3, Vector3, portable};
 
 use super::Resolver;
 use crate::diagnostic::{Diagnostic, Span, did_you_mean};
+use crate::document::check::number::{SMALLEST, show};
 use crate::document::model::{self, Either, Located};
 use crate::scene::{self, Extent, Frame};
 
@@ -50,12 +52,16 @@ impl Resolver<'_> {
         }
     }
 
-    /// Left, right, bottom and top, which must increase.
+    /// Left, right, bottom and top, which must increase, and by no less than the smallest size that anything has.
     pub(super) fn extent(&mut self, [left, right, bottom, top]: [f64; 4], span: &Option<Span>, what: &str) -> Extent {
         for (low, low_name, high, high_name) in [(left, "left", right, "right"), (bottom, "bottom", top, "top")] {
-            if low >= high {
-                let size = if low == high { "has no size" } else { "is turned around" };
-                let message = format!("{what} {size}: {low_name} is {low} and {high_name} is {high}");
+            if high - low < SMALLEST {
+                let size = match low.partial_cmp(&high) {
+                    Some(Ordering::Less) => "is too small",
+                    Some(Ordering::Greater) => "is turned around",
+                    _ => "has no size",
+                };
+                let message = format!("{what} {size}: {low_name} is {} and {high_name} is {}", show(low), show(high));
                 self.error(span, message, "[left, right, bottom, top]");
             }
         }
@@ -194,6 +200,7 @@ impl Resolver<'_> {
         if let Some(given) = &mark.far
             && far >= near
         {
+            let (far, near) = (show(far), show(near));
             let message = format!("the drawn camera's far plane z = {far} is not beyond its near plane z = {near}");
             self.error(&given.span, message, "must be below `near`: the camera looks along −z");
         }

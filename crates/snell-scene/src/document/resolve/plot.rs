@@ -2,6 +2,7 @@
 
 use super::Resolver;
 use crate::diagnostic::{Diagnostic, Span};
+use crate::document::check::number::show;
 use crate::document::model::{self, Either, Located, Quantity};
 use crate::scene::{self, AxisPlace, CurveKind, Expression, Extent, Plot, Ticks};
 
@@ -58,7 +59,7 @@ impl Resolver<'_> {
             (Some(every), _) => match self.quantity(every) {
                 Some(step) if step > 0.0 => Ticks::Every(step),
                 Some(step) => {
-                    let message = format!("the distance from tick to tick is {step}, but must be above 0");
+                    let message = format!("the distance from tick to tick is {}, but must be above 0", show(step));
                     self.error(&every.span, message, "no step forward");
                     Ticks::Auto
                 }
@@ -125,7 +126,7 @@ impl Resolver<'_> {
         if from >= to {
             self.error(
                 span,
-                format!("the curve goes from {from} to {to}, which is nowhere"),
+                format!("the curve goes from {} to {}, which is nowhere", show(from), show(to)),
                 "`to` must be above `from`",
             );
             return None;
