@@ -22,6 +22,7 @@ pub struct Camera {
     window: Rectangle,
     near: f64,
     far: f64,
+    pixels: [u32; 2],
     cells: [f64; 2],
     shift: f64,
     window_from_raster: RectangleMap,
@@ -108,6 +109,7 @@ impl Camera {
             window,
             near,
             far,
+            pixels: [width, height],
             cells,
             shift,
             window_from_raster,
@@ -244,8 +246,7 @@ impl Camera {
 
     /// The picture's size in pixels.
     pub fn pixels(&self) -> [u32; 2] {
-        // Whole numbers that came from u32.
-        self.cells.map(|cells| (cells + 2.0 * self.shift) as u32)
+        self.pixels
     }
 }
 
