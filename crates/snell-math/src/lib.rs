@@ -12,6 +12,7 @@ pub mod bounds;
 pub mod color;
 pub mod dispersion;
 pub mod homogeneous;
+pub mod lanes;
 pub mod portable;
 pub mod ray;
 pub mod roots;

@@ -1,0 +1,144 @@
+//! All ways of computing give the bits of one number at a time.
+
+use proptest::prelude::*;
+
+use super::{Bits, Floats, InstructionSet, LaneColor, LaneVector, Lanes, WIDTH, Work, dispatch};
+use crate::{Rgb, Vector3};
+
+/// Everything that lanes can do, on rows of numbers; a row of bits for each result.
+struct Everything<'a> {
+    a: &'a [f64; WIDTH],
+    b: &'a [f64; WIDTH],
+    bits: Bits,
+}
+
+type Results = Vec<[u64; WIDTH]>;
+
+impl Work for Everything<'_> {
+    type Output = Results;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Results {
+        let mut results: Results = Vec::new();
+        for at in (0..WIDTH).step_by(L::COUNT) {
+            let (a, b, bits) = (L::load(self.a, at), L::load(self.b, at), Bits(self.bits.0 >> at));
+            let (f, g) = (a.to_floats(), b.to_floats());
+            let vector = LaneVector { x: a, y: b, z: a - b };
+            let color = LaneColor { r: f, g, b: f * g };
+            let numbers = [
+                a + b,
+                a - b,
+                a * b,
+                a / b,
+                -a,
+                a.sqrt(),
+                a.abs(),
+                a.copysign(b),
+                a.or_where_not(bits, b),
+                a.larger(b),
+                a.smaller(b),
+                L::splat(1.5) * a,
+                L::from_floats(f),
+                vector.dot(vector + vector),
+                vector.normalize().y,
+                vector.max_abs(),
+                (-vector * a).or_where_not(bits, vector).z,
+            ];
+            let floats = [
+                f + g,
+                f - g,
+                f * g,
+                -f,
+                f.abs(),
+                f.max(g),
+                f.or_where_not(bits, g),
+                color.max_abs(),
+                (color + color * f).or_where_not(bits, color * color).b,
+            ];
+            let tests =
+                [a.lt(b), a.le(b), a.same(b), a.gt(b), a.ge(b), f.lt(g), f.is_zero(), f.is_nan(), color.is_black()];
+            let count = numbers.len() + floats.len() + tests.len();
+            results.resize(count, [0; WIDTH]);
+            let mut rows = results.iter_mut();
+            for number in numbers {
+                let mut row = [0.0; WIDTH];
+                number.store(&mut row, at);
+                let target = rows.next().expect("a row for each");
+                // Which NaN comes of an invalid operation is not the same everywhere.
+                (at..at + L::COUNT).for_each(|i| target[i] = if row[i].is_nan() { u64::MAX } else { row[i].to_bits() });
+            }
+            for float in floats {
+                let mut row = [0.0; WIDTH];
+                float.store(&mut row, at);
+                let target = rows.next().expect("a row for each");
+                (at..at + L::COUNT).for_each(|i| {
+                    target[i] = if row[i].is_nan() { u64::MAX } else { u64::from(row[i].to_bits()) };
+                });
+            }
+            for test in tests {
+                let target = rows.next().expect("a row for each");
+                (0..L::COUNT).for_each(|i| target[at + i] = u64::from(test.has(i)));
+            }
+        }
+        results
+    }
+}
+
+fn numbers() -> impl Strategy<Value = [f64; WIDTH]> {
+    let number = prop_oneof![
+        -1e3..1e3f64,
+        any::<f64>(),
+        Just(0.0),
+        Just(-0.0),
+        Just(f64::INFINITY),
+        Just(f64::NAN),
+        Just(5e-324),
+        Just(1.0)
+    ];
+    prop::collection::vec(number, WIDTH).prop_map(|v| std::array::from_fn(|i| v[i]))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+    #[test]
+    fn all_instructions_give_the_same_bits(a in numbers(), b in numbers(), bits in any::<u8>()) {
+        let work = || Everything { a: &a, b: &b, bits: Bits(bits) };
+        let expected = dispatch(InstructionSet::Scalar, work());
+        for set in InstructionSet::available() {
+            prop_assert_eq!(&dispatch(set, work()), &expected, "{:?}", set);
+        }
+        // The twin: one bit of one number is enough to tell.
+        let mut other = a;
+        other[5] = f64::from_bits(a[5].to_bits() ^ 1);
+        if !a[5].is_nan() && !other[5].is_nan() {
+            let different = dispatch(InstructionSet::best(), Everything { a: &other, b: &b, bits: Bits(bits) });
+            prop_assert_ne!(different, expected);
+        }
+    }
+
+    #[test]
+    fn one_lane_is_what_vectors_and_colours_are(a in numbers(), f in prop::array::uniform3(any::<f32>())) {
+        let v = Vector3::new(a[0], a[1], a[2]);
+        let w = Vector3::new(a[3], a[4], a[5]);
+        let (lanes, others) = (LaneVector::from(v), LaneVector::from(w));
+        let same = |x: f64, y: f64| x.to_bits() == y.to_bits() || x.is_nan() && y.is_nan();
+        prop_assert!(same(lanes.dot(others), v.dot(w)));
+        let (a, b) = (Vector3::from(lanes.normalize()), v.normalize());
+        prop_assert!((0..3).all(|i| same(a[i], b[i])), "{:?} {:?}", a, b);
+        prop_assert!(same(lanes.max_abs(), v.max_abs()));
+        let color = Rgb::from(f);
+        let lane = LaneColor::<f32>::splat(color);
+        prop_assert_eq!(lane.is_black().any(), color.is_black());
+        prop_assert!(lane.max_abs().to_bits() == color.max_abs().to_bits() || color.max_abs().is_nan());
+    }
+}
+
+#[test]
+fn sets_of_lanes_are_sets() {
+    let bits = Bits(0b1001_0010);
+    assert_eq!((bits.count(), bits.lowest(), bits.has(1), bits.has(2)), (3, 1, true, false));
+    assert_eq!(bits.lanes().collect::<Vec<_>>(), [1, 4, 7]);
+    assert_eq!(bits.without(Bits::lane(4)) | Bits::lane(0), Bits(0b1000_0011));
+    assert_eq!((Bits::first(8), Bits::first(0), !Bits::first(3)), (Bits(255), Bits::NONE, Bits(0b1111_1000)));
+    assert_eq!((Bits::all_if(true), Bits::all_if(false)), (Bits(255), Bits::NONE));
+}

@@ -1,0 +1,361 @@
+//! Lanes by the instructions of x86-64: eight `f64` in one register with AVX-512, in two with AVX2.
+//!
+//! Safety, here once for all: the types of this file are known outside only as a type parameter of [`super::Work::run`], which
+//! [`super::dispatch`] calls with them after it has found that the machine has the instructions. So wherever a method of theirs
+//! runs, its instructions are there.
+
+use std::arch::x86_64::*;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::sync::OnceLock;
+
+use super::{Bits, Floats, Lanes, WIDTH};
+
+/// Whether the machine has what [`Eight256`] needs.
+#[inline]
+pub fn has_avx2() -> bool {
+    static HAS: OnceLock<bool> = OnceLock::new();
+    *HAS.get_or_init(|| is_x86_feature_detected!("avx2"))
+}
+
+/// Whether the machine has what [`Eight512`] needs.
+#[inline]
+pub fn has_avx512() -> bool {
+    static HAS: OnceLock<bool> = OnceLock::new();
+    *HAS.get_or_init(|| {
+        is_x86_feature_detected!("avx512f")
+            && is_x86_feature_detected!("avx512vl")
+            && is_x86_feature_detected!("avx512dq")
+            && is_x86_feature_detected!("avx512bw")
+            && has_avx2()
+    })
+}
+
+/// Eight `f64` in one register of 512 bits.
+#[derive(Clone, Copy, Debug)]
+pub struct Eight512(__m512d);
+
+/// Eight `f32` in a register of 256 bits, with masks of AVX-512.
+#[derive(Clone, Copy, Debug)]
+pub struct Floats512(__m256);
+
+/// Eight `f64` in two registers of 256 bits.
+#[derive(Clone, Copy, Debug)]
+pub struct Eight256(__m256d, __m256d);
+
+/// Eight `f32` in a register of 256 bits.
+#[derive(Clone, Copy, Debug)]
+pub struct Floats256(__m256);
+
+/// Implements an operator by an expression that may use the instructions, see the safety note at the top of the file.
+macro_rules! operator {
+    ($type:ident, $trait:ident, $method:ident, |$a:ident, $b:ident| $body:expr) => {
+        impl $trait for $type {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                let ($a, $b) = (self, other);
+                // SAFETY: the instructions are there, see the top of the file.
+                unsafe { $body }
+            }
+        }
+    };
+}
+
+operator!(Eight512, Add, add, |a, b| Self(_mm512_add_pd(a.0, b.0)));
+operator!(Eight512, Sub, sub, |a, b| Self(_mm512_sub_pd(a.0, b.0)));
+operator!(Eight512, Mul, mul, |a, b| Self(_mm512_mul_pd(a.0, b.0)));
+operator!(Eight512, Div, div, |a, b| Self(_mm512_div_pd(a.0, b.0)));
+operator!(Eight256, Add, add, |a, b| Self(_mm256_add_pd(a.0, b.0), _mm256_add_pd(a.1, b.1)));
+operator!(Eight256, Sub, sub, |a, b| Self(_mm256_sub_pd(a.0, b.0), _mm256_sub_pd(a.1, b.1)));
+operator!(Eight256, Mul, mul, |a, b| Self(_mm256_mul_pd(a.0, b.0), _mm256_mul_pd(a.1, b.1)));
+operator!(Eight256, Div, div, |a, b| Self(_mm256_div_pd(a.0, b.0), _mm256_div_pd(a.1, b.1)));
+
+macro_rules! float_operators {
+    ($($type:ident),*) => {
+        $(operator!($type, Add, add, |a, b| Self(_mm256_add_ps(a.0, b.0)));
+        operator!($type, Sub, sub, |a, b| Self(_mm256_sub_ps(a.0, b.0)));
+        operator!($type, Mul, mul, |a, b| Self(_mm256_mul_ps(a.0, b.0)));
+        impl Neg for $type {
+            type Output = Self;
+            #[inline(always)]
+            fn neg(self) -> Self {
+                // SAFETY: the instructions are there, see the top of the file.
+                unsafe { Self(_mm256_xor_ps(self.0, _mm256_set1_ps(-0.0))) }
+            }
+        })*
+    };
+}
+float_operators!(Floats512, Floats256);
+
+impl Neg for Eight512 {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        // SAFETY: the instructions are there, see the top of the file.
+        unsafe { Self(_mm512_xor_pd(self.0, _mm512_set1_pd(-0.0))) }
+    }
+}
+
+impl Neg for Eight256 {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        // SAFETY: the instructions are there, see the top of the file.
+        unsafe {
+            let sign = _mm256_set1_pd(-0.0);
+            Self(_mm256_xor_pd(self.0, sign), _mm256_xor_pd(self.1, sign))
+        }
+    }
+}
+
+impl Lanes for Eight512 {
+    const COUNT: usize = WIDTH;
+    type Floats = Floats512;
+
+    #[inline(always)]
+    fn stage<R>(work: impl FnOnce() -> R) -> R {
+        #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,bmi1,bmi2,lzcnt,popcnt")]
+        fn with_instructions<R>(work: impl FnOnce() -> R) -> R {
+            work()
+        }
+        // SAFETY: the instructions are there, see the top of the file; every machine with AVX2 counts bits.
+        unsafe { with_instructions(work) }
+    }
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        // SAFETY: as above.
+        unsafe { Self(_mm512_set1_pd(value)) }
+    }
+    #[inline(always)]
+    fn load(row: &[f64; WIDTH], _: usize) -> Self {
+        // SAFETY: as above; the row has eight numbers.
+        unsafe { Self(_mm512_loadu_pd(row.as_ptr())) }
+    }
+    #[inline(always)]
+    fn store(self, row: &mut [f64; WIDTH], _: usize) {
+        // SAFETY: as above; the row has eight places.
+        unsafe { _mm512_storeu_pd(row.as_mut_ptr(), self.0) }
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        // SAFETY: as above.
+        unsafe { Self(_mm512_sqrt_pd(self.0)) }
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        // SAFETY: as above.
+        unsafe { Self(_mm512_abs_pd(self.0)) }
+    }
+    #[inline(always)]
+    fn copysign(self, sign: Self) -> Self {
+        // SAFETY: as above.
+        unsafe {
+            let minus = _mm512_set1_pd(-0.0);
+            Self(_mm512_or_pd(_mm512_andnot_pd(minus, self.0), _mm512_and_pd(minus, sign.0)))
+        }
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> Bits {
+        // SAFETY: as above.
+        unsafe { Bits(_mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, other.0)) }
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> Bits {
+        // SAFETY: as above.
+        unsafe { Bits(_mm512_cmp_pd_mask::<_CMP_LE_OQ>(self.0, other.0)) }
+    }
+    #[inline(always)]
+    fn same(self, other: Self) -> Bits {
+        // SAFETY: as above.
+        unsafe { Bits(_mm512_cmp_pd_mask::<_CMP_EQ_OQ>(self.0, other.0)) }
+    }
+    #[inline(always)]
+    fn or_where_not(self, bits: Bits, other: Self) -> Self {
+        // SAFETY: as above.
+        unsafe { Self(_mm512_mask_blend_pd(bits.0, other.0, self.0)) }
+    }
+    #[inline(always)]
+    fn to_floats(self) -> Floats512 {
+        // SAFETY: as above.
+        unsafe { Floats512(_mm512_cvtpd_ps(self.0)) }
+    }
+    #[inline(always)]
+    fn from_floats(floats: Floats512) -> Self {
+        // SAFETY: as above.
+        unsafe { Self(_mm512_cvtps_pd(floats.0)) }
+    }
+}
+
+impl Lanes for Eight256 {
+    const COUNT: usize = WIDTH;
+    type Floats = Floats256;
+
+    #[inline(always)]
+    fn stage<R>(work: impl FnOnce() -> R) -> R {
+        #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
+        fn with_instructions<R>(work: impl FnOnce() -> R) -> R {
+            work()
+        }
+        // SAFETY: the instructions are there, see the top of the file; every machine with AVX2 counts bits.
+        unsafe { with_instructions(work) }
+    }
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        // SAFETY: as above.
+        unsafe { Self(_mm256_set1_pd(value), _mm256_set1_pd(value)) }
+    }
+    #[inline(always)]
+    fn load(row: &[f64; WIDTH], _: usize) -> Self {
+        // SAFETY: as above; the row has eight numbers.
+        unsafe { Self(_mm256_loadu_pd(row.as_ptr()), _mm256_loadu_pd(row.as_ptr().add(4))) }
+    }
+    #[inline(always)]
+    fn store(self, row: &mut [f64; WIDTH], _: usize) {
+        // SAFETY: as above; the row has eight places.
+        unsafe {
+            _mm256_storeu_pd(row.as_mut_ptr(), self.0);
+            _mm256_storeu_pd(row.as_mut_ptr().add(4), self.1);
+        }
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        // SAFETY: as above.
+        unsafe { Self(_mm256_sqrt_pd(self.0), _mm256_sqrt_pd(self.1)) }
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        // SAFETY: as above.
+        unsafe {
+            let sign = _mm256_set1_pd(-0.0);
+            Self(_mm256_andnot_pd(sign, self.0), _mm256_andnot_pd(sign, self.1))
+        }
+    }
+    #[inline(always)]
+    fn copysign(self, sign: Self) -> Self {
+        // SAFETY: as above.
+        unsafe {
+            let minus = _mm256_set1_pd(-0.0);
+            let half = |magnitude, sign| _mm256_or_pd(_mm256_andnot_pd(minus, magnitude), _mm256_and_pd(minus, sign));
+            Self(half(self.0, sign.0), half(self.1, sign.1))
+        }
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> Bits {
+        // SAFETY: as above.
+        unsafe { join(_mm256_cmp_pd::<_CMP_LT_OQ>(self.0, other.0), _mm256_cmp_pd::<_CMP_LT_OQ>(self.1, other.1)) }
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> Bits {
+        // SAFETY: as above.
+        unsafe { join(_mm256_cmp_pd::<_CMP_LE_OQ>(self.0, other.0), _mm256_cmp_pd::<_CMP_LE_OQ>(self.1, other.1)) }
+    }
+    #[inline(always)]
+    fn same(self, other: Self) -> Bits {
+        // SAFETY: as above.
+        unsafe { join(_mm256_cmp_pd::<_CMP_EQ_OQ>(self.0, other.0), _mm256_cmp_pd::<_CMP_EQ_OQ>(self.1, other.1)) }
+    }
+    #[inline(always)]
+    fn or_where_not(self, bits: Bits, other: Self) -> Self {
+        // SAFETY: as above.
+        unsafe {
+            let all = _mm256_set1_epi64x(i64::from(bits.0));
+            let mask = |lanes| _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(all, lanes), lanes));
+            let (low, high) = (mask(_mm256_setr_epi64x(1, 2, 4, 8)), mask(_mm256_setr_epi64x(16, 32, 64, 128)));
+            Self(_mm256_blendv_pd(other.0, self.0, low), _mm256_blendv_pd(other.1, self.1, high))
+        }
+    }
+    #[inline(always)]
+    fn to_floats(self) -> Floats256 {
+        // SAFETY: as above.
+        unsafe { Floats256(_mm256_set_m128(_mm256_cvtpd_ps(self.1), _mm256_cvtpd_ps(self.0))) }
+    }
+    #[inline(always)]
+    fn from_floats(floats: Floats256) -> Self {
+        // SAFETY: as above.
+        unsafe {
+            let high = _mm256_extractf128_ps::<1>(floats.0);
+            Self(_mm256_cvtps_pd(_mm256_castps256_ps128(floats.0)), _mm256_cvtps_pd(high))
+        }
+    }
+}
+
+/// The signs of two halves as bits.
+///
+/// # Safety
+/// The machine has AVX2.
+#[inline(always)]
+unsafe fn join(low: __m256d, high: __m256d) -> Bits {
+    // SAFETY: the caller knows.
+    unsafe { Bits((_mm256_movemask_pd(low) | _mm256_movemask_pd(high) << 4) as u8) }
+}
+
+macro_rules! floats {
+    ($type:ident, |$a:ident, $b:ident| $lt:expr, $is_zero:expr, $is_nan:expr, |$bits:ident| $blend:expr) => {
+        impl Floats for $type {
+            #[inline(always)]
+            fn splat(value: f32) -> Self {
+                // SAFETY: the instructions are there, see the top of the file.
+                unsafe { Self(_mm256_set1_ps(value)) }
+            }
+            #[inline(always)]
+            fn load(row: &[f32; WIDTH], _: usize) -> Self {
+                // SAFETY: as above; the row has eight numbers.
+                unsafe { Self(_mm256_loadu_ps(row.as_ptr())) }
+            }
+            #[inline(always)]
+            fn store(self, row: &mut [f32; WIDTH], _: usize) {
+                // SAFETY: as above; the row has eight places.
+                unsafe { _mm256_storeu_ps(row.as_mut_ptr(), self.0) }
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                // SAFETY: as above.
+                unsafe { Self(_mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0)) }
+            }
+            #[inline(always)]
+            fn lt(self, other: Self) -> Bits {
+                let ($a, $b) = (self.0, other.0);
+                // SAFETY: as above.
+                unsafe { Bits($lt as u8) }
+            }
+            #[inline(always)]
+            fn is_zero(self) -> Bits {
+                let $a = self.0;
+                // SAFETY: as above.
+                unsafe { Bits($is_zero as u8) }
+            }
+            #[inline(always)]
+            fn is_nan(self) -> Bits {
+                let $a = self.0;
+                // SAFETY: as above.
+                unsafe { Bits($is_nan as u8) }
+            }
+            #[inline(always)]
+            fn or_where_not(self, $bits: Bits, other: Self) -> Self {
+                let ($a, $b) = (self.0, other.0);
+                // SAFETY: as above.
+                unsafe { Self($blend) }
+            }
+        }
+    };
+}
+
+floats!(
+    Floats512,
+    |a, b| _mm256_cmp_ps_mask::<_CMP_LT_OQ>(a, b),
+    _mm256_cmp_ps_mask::<_CMP_EQ_OQ>(a, _mm256_setzero_ps()),
+    _mm256_cmp_ps_mask::<_CMP_UNORD_Q>(a, a),
+    |bits| _mm256_mask_blend_ps(bits.0, b, a)
+);
+floats!(
+    Floats256,
+    |a, b| _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(a, b)),
+    _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_EQ_OQ>(a, _mm256_setzero_ps())),
+    _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_UNORD_Q>(a, a)),
+    |bits| {
+        let lanes = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+        let all = _mm256_set1_epi32(i32::from(bits.0));
+        let mask = _mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_and_si256(all, lanes), lanes));
+        _mm256_blendv_ps(b, a, mask)
+    }
+);
