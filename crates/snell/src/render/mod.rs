@@ -21,6 +21,7 @@ pub use settings::RenderSettings;
 use crate::camera::Camera;
 use crate::compile::CompiledScene;
 use crate::film::{Film, PixelSum};
+use crate::geometry::Hit;
 use crate::integrator::{Integrator, Rules, Whitted};
 use crate::observe::{NoObserver, RayTree};
 use crate::render::adaptive::{Contrast, Display, Range};
@@ -129,9 +130,8 @@ pub fn explain(
     let mut scratch = Scratch::default();
     let (ray, split) = job.camera_sample(pixel, sampling::pixel_sample(sample), sample);
     let far = camera.far_distance(&ray);
-    job.tracer().trace([(ray, split)], &mut scratch, &mut Statistics::default(), &mut tree, |_, _, hit| {
-        *hit = hit.filter(|hit| hit.t <= far);
-    });
+    let mut to_far = |_: usize, _: &Ray, hit: &mut Option<Hit>| *hit = hit.filter(|hit| hit.t <= far);
+    job.tracer().trace([(ray, split)], &mut scratch, &mut Statistics::default(), &mut tree, Some(&mut to_far));
     Ok(tree)
 }
 
@@ -229,7 +229,7 @@ impl<I: Integrator> Job<'_, I> {
                     .iter()
                     .map(move |(place, number)| self.camera_sample([pixel % width, pixel / width], place, number))
             });
-            let colors = self.tracer().trace(rays, scratch, &mut statistics, &mut NoObserver, |number, ray, hit| {
+            let mut watch = |number: usize, ray: &Ray, hit: &mut Option<Hit>| {
                 let far = self.camera.far_distance(ray);
                 if hit.is_some_and(|hit| hit.t > far) {
                     *hit = None;
@@ -237,7 +237,11 @@ impl<I: Integrator> Job<'_, I> {
                 if self.settings.layers && samples.first == 0 && number % per_pixel == 0 {
                     first_hits.push(FirstHit::new(self.scene, self.camera, ray, hit.as_ref()));
                 }
-            });
+            };
+            let is_watched = self.settings.layers || self.camera.planes()[1] > f64::NEG_INFINITY;
+            let watch: Option<&mut dyn FnMut(usize, &Ray, &mut Option<Hit>)> =
+                if is_watched { Some(&mut watch) } else { None };
+            let colors = self.tracer().trace(rays, scratch, &mut statistics, &mut NoObserver, watch);
             // All that can be done before the lock.
             sums.clear();
             sums.extend(colors.chunks(per_pixel).map(|colors| {
@@ -279,9 +283,9 @@ impl<I: Integrator> Job<'_, I> {
     }
 
     fn tracer(&self) -> Tracer<'_, I> {
-        let RenderSettings { depth, min_weight, weightless_rays, shadows, .. } = *self.settings;
+        let RenderSettings { depth, min_weight, weightless_rays, shadows, instructions, .. } = *self.settings;
         let rules = Rules { depth, min_weight, weightless_rays, shadows };
-        Tracer { scene: self.scene, integrator: self.integrator, rules }
+        Tracer { scene: self.scene, integrator: self.integrator, rules, instructions }
     }
 
     /// The picture, or the given pixels of it, in square tiles; each is a list of pixel places.
