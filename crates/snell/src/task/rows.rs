@@ -255,6 +255,19 @@ impl<R: Rows> Queue<R> {
         self.rows.push(R::NOTHING);
     }
 
+    /// Makes it hold so many, of which nothing is known yet: see [`Queue::rows_mut`].
+    pub fn fill(&mut self, count: usize) {
+        self.count = count;
+        while self.rows.len() < count.div_ceil(WIDTH) {
+            self.grow();
+        }
+    }
+
+    /// The rows in use.
+    pub fn rows_mut(&mut self) -> &mut [R] {
+        &mut self.rows[..self.count.div_ceil(WIDTH)]
+    }
+
     /// The rows in use, with which of their lanes are.
     #[inline]
     pub fn rows(&self) -> impl ExactSizeIterator<Item = (&R, Bits)> {

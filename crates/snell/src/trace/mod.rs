@@ -26,7 +26,9 @@ use crate::integrator::{Integrator, QUEUES, Rules, Sink};
 use crate::interaction::SurfaceRows;
 use crate::observe::Observer;
 use crate::statistics::Statistics;
-use crate::task::{MediumStack, MediumStacks, QuestionQueue, RayKind, RayQueue, RayTask};
+use crate::task::{
+    MediumStack, MediumStacks, QuestionQueue, RayKind, RayNotes, RayQueue, RayRows, column, set_column,
+};
 
 /// The queues and buffers of one worker, reused from tile to tile so that rays cost no allocation.
 #[derive(Debug, Default)]
@@ -65,41 +67,27 @@ impl<I: Integrator> Tracer<'_, I> {
     /// there is nothing to be shown.
     pub fn trace<'s, O: Observer>(
         &self,
-        camera_rays: impl IntoIterator<Item = (Ray, u32)>,
+        camera_rays: &(impl CameraRays + ?Sized),
         scratch: &'s mut Scratch,
         statistics: &mut Statistics,
         observer: &mut O,
         first_hits: Option<&mut dyn FnMut(usize, &Ray, &mut Option<Hit>)>,
     ) -> &'s [Rgb] {
-        let Scratch { current, media, query, sums, .. } = &mut *scratch;
-        let [queue, ..] = current;
-        let mut before: Option<(Point3, MediumStack)> = None;
-        queue.clear();
-        media.clear();
-        let mut next_id = 0;
-        for (ray, split) in camera_rays {
-            let media = match before {
-                // The rays of a perspective camera share their origin.
-                Some((origin, media)) if origin == ray.origin => media,
-                _ => self.scene.media_around(ray.origin, media, query),
-            };
-            before = Some((ray.origin, media));
-            let task = camera_task(ray, next_id, split, media);
-            next_id += 1;
-            observer.ray(&task);
-            queue.push(&task);
-        }
-        sums.clear();
-        sums.resize(queue.len(), Rgb::BLACK);
-        statistics.camera_rays += queue.len() as u64;
-        statistics.max_depth = statistics.max_depth.max(u32::from(!queue.is_empty()));
-        let generations =
-            Generations { tracer: self, scratch: &mut *scratch, statistics, observer, first_hits, next_id };
+        let count = camera_rays.count();
+        scratch.current[0].fill(count);
+        scratch.media.clear();
+        scratch.sums.clear();
+        scratch.sums.resize(count, Rgb::BLACK);
+        statistics.camera_rays += count as u64;
+        statistics.max_depth = statistics.max_depth.max(u32::from(count > 0));
+        let next_id = count as u32;
+        let generations = Generations { tracer: self, scratch: &mut *scratch, statistics, observer, first_hits, next_id };
+        let whole = Whole { camera_rays, generations };
         if O::WATCHES {
             // A watcher is told of one ray after the other.
-            generations.run::<f64>();
+            whole.run::<f64>();
         } else {
-            dispatch(self.instructions, generations);
+            dispatch(self.instructions, whole);
         }
         &scratch.sums
     }
@@ -115,25 +103,69 @@ struct Generations<'t, 'a, 'f, I, O> {
     next_id: u32,
 }
 
-impl<I: Integrator, O: Observer> Work for Generations<'_, '_, '_, I, O> {
+/// All there is to do: camera rays, then generation after generation.
+struct Whole<'c, 't, 'a, 'f, C: ?Sized, I, O> {
+    camera_rays: &'c C,
+    generations: Generations<'t, 'a, 'f, I, O>,
+}
+
+impl<C: CameraRays + ?Sized, I: Integrator, O: Observer> Work for Whole<'_, '_, '_, '_, C, I, O> {
     type Output = ();
 
     #[inline(always)]
-    fn run<L: Lanes>(mut self) {
-        let mut first_hits = self.first_hits.take();
-        while self.scratch.current.iter().any(|queue| !queue.is_empty()) {
-            L::stage(Intersect(&mut self));
+    fn run<L: Lanes>(self) {
+        let Self { camera_rays, mut generations } = self;
+        L::stage(Begin(camera_rays, &mut generations));
+        let mut first_hits = generations.first_hits.take();
+        while generations.scratch.current.iter().any(|queue| !queue.is_empty()) {
+            L::stage(Intersect(&mut generations));
             if let Some(first_hits) = first_hits.take() {
-                self.show_first_hits(first_hits);
+                generations.show_first_hits(first_hits);
             }
-            L::stage(Shade(&mut self));
-            L::stage(Answer(&mut self));
-            std::mem::swap(&mut self.scratch.current, &mut self.scratch.next);
+            L::stage(Shade(&mut generations));
+            L::stage(Answer(&mut generations));
+            let Scratch { current, next, .. } = &mut *generations.scratch;
+            std::mem::swap(current, next);
         }
     }
 }
 
 impl<I: Integrator, O: Observer> Generations<'_, '_, '_, I, O> {
+    /// Makes the camera rays, the first generation, which carry all light.
+    #[inline(always)]
+    fn begin<L: Lanes>(&mut self, camera_rays: &(impl CameraRays + ?Sized)) {
+        let Scratch { current, media, query, .. } = &mut *self.scratch;
+        let scene = self.tracer.scene;
+        let mut before: Option<(Point3, MediumStack)> = None;
+        let mut first = 0;
+        for rows in current[0].rows_mut() {
+            rows.throughput = [[1.0; WIDTH]; 3];
+            let mut split = [0; WIDTH];
+            for at in (0..WIDTH).step_by(L::COUNT) {
+                camera_rays.generate::<L>(first + at, rows, &mut split, at);
+            }
+            for lane in 0..WIDTH {
+                let number = (first + lane) as u32;
+                rows.sample[lane] = number;
+                let (band, kind, split) = (None, RayKind::Camera, split[lane]);
+                rows.notes[lane] = RayNotes { id: number, parent: number, split, depth: 1, passes: 0, band, kind };
+                // The rays of a perspective camera share their origin.
+                let origin = Point3::from(column(&rows.origin, lane));
+                rows.media[lane] = match before {
+                    Some((same, media)) if same == origin => media,
+                    _ => scene.media_around(origin, media, query),
+                };
+                before = Some((origin, rows.media[lane]));
+            }
+            first += WIDTH;
+        }
+        if O::WATCHES {
+            for (rows, active) in current[0].rows() {
+                active.lanes().for_each(|lane| self.observer.ray(&rows.task(lane)));
+            }
+        }
+    }
+
     /// Finds what every ray of the generation meets.
     #[inline(always)]
     fn intersect<L: Lanes>(&mut self) {
@@ -207,10 +239,45 @@ impl<I: Integrator, O: Observer> Generations<'_, '_, '_, I, O> {
     }
 }
 
-/// The steps of a generation, each compiled as a whole for the instructions at hand.
+/// Rays from the camera, one a sample.
+pub trait CameraRays {
+    /// How many.
+    fn count(&self) -> usize;
+    /// Writes rays from number `first` on to rows from place `at` on, with the numbers of their places to split white light; what
+    /// it writes for numbers beyond the count is not looked at, but finite.
+    fn generate<L: Lanes>(&self, first: usize, rows: &mut RayRows, split: &mut [u32; WIDTH], at: usize);
+}
+
+impl CameraRays for [(Ray, u32)] {
+    fn count(&self) -> usize {
+        self.len()
+    }
+
+    #[inline(always)]
+    fn generate<L: Lanes>(&self, first: usize, rows: &mut RayRows, split: &mut [u32; WIDTH], at: usize) {
+        for lane in 0..L::COUNT {
+            if let Some((ray, number)) = self.get(first + lane).or(self.last()) {
+                set_column(&mut rows.origin, at + lane, ray.origin.to_array());
+                set_column(&mut rows.direction, at + lane, ray.direction.to_array());
+                split[at + lane] = *number;
+            }
+        }
+    }
+}
+
+/// The steps of a generation, and the one before all, each compiled as a whole for the instructions at hand.
+struct Begin<'c, 'g, C: ?Sized, G>(&'c C, &'g mut G);
 struct Intersect<'g, G>(&'g mut G);
 struct Shade<'g, G>(&'g mut G);
 struct Answer<'g, G>(&'g mut G);
+
+impl<C: CameraRays + ?Sized, I: Integrator, O: Observer> Work for Begin<'_, '_, C, Generations<'_, '_, '_, I, O>> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        self.1.begin::<L>(self.0);
+    }
+}
 
 impl<I: Integrator, O: Observer> Work for Intersect<'_, Generations<'_, '_, '_, I, O>> {
     type Output = ();
@@ -240,21 +307,4 @@ impl<I: Integrator, O: Observer> Work for Answer<'_, Generations<'_, '_, '_, I, 
 #[inline(always)]
 fn parts<L: Lanes>(active: Bits) -> impl Iterator<Item = (usize, Bits)> {
     (0..WIDTH).step_by(L::COUNT).map(move |at| (at, Bits(active.0 >> at) & L::all())).filter(|(_, lanes)| lanes.any())
-}
-
-/// A ray from the camera, with all light.
-fn camera_task(ray: Ray, number: u32, split: u32, media: MediumStack) -> RayTask {
-    RayTask {
-        ray,
-        throughput: Rgb::WHITE,
-        sample: number,
-        id: number,
-        parent: number,
-        media,
-        depth: 1,
-        passes: 0,
-        kind: RayKind::Camera,
-        band: None,
-        split,
-    }
 }

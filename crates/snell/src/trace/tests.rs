@@ -63,11 +63,11 @@ fn samples_do_not_know_of_each_other() {
     let tracer = Tracer { scene: &scene, integrator: &integrator, rules: RULES, instructions: InstructionSet::best() };
     let rays = rays();
     let (mut scratch, mut together) = (Scratch::default(), Statistics::default());
-    let all = tracer.trace(rays.iter().copied(), &mut scratch, &mut together, &mut NoObserver, None).to_vec();
+    let all = tracer.trace(rays.as_slice(), &mut scratch, &mut together, &mut NoObserver, None).to_vec();
     let (mut each, mut alone) = (Vec::new(), Statistics::default());
     // With queues that others have used, in the other order.
     for &ray in rays.iter().rev() {
-        each.extend_from_slice(tracer.trace([ray], &mut scratch, &mut alone, &mut NoObserver, None));
+        each.extend_from_slice(tracer.trace([ray].as_slice(), &mut scratch, &mut alone, &mut NoObserver, None));
     }
     each.reverse();
     assert_eq!(all, each);
@@ -89,7 +89,7 @@ fn all_instructions_give_the_same_bits() {
     let trace = |instructions: InstructionSet| {
         let tracer = Tracer { scene: &scene, integrator: &integrator, rules: RULES, instructions };
         let (mut scratch, mut statistics) = (Scratch::default(), Statistics::default());
-        let colors = tracer.trace(rays.iter().copied(), &mut scratch, &mut statistics, &mut NoObserver, None);
+        let colors = tracer.trace(rays.as_slice(), &mut scratch, &mut statistics, &mut NoObserver, None);
         (colors.iter().map(|color| color.to_array().map(f32::to_bits)).collect::<Vec<_>>(), statistics)
     };
     let alone = trace(InstructionSet::Scalar);
@@ -111,9 +111,9 @@ fn watchers_change_nothing_and_see_every_ray() {
     let mut scratch = Scratch::default();
     for ray in rays() {
         let (mut plain, mut watched) = (Statistics::default(), Statistics::default());
-        let color = tracer.trace([ray], &mut scratch, &mut plain, &mut NoObserver, None)[0];
+        let color = tracer.trace([ray].as_slice(), &mut scratch, &mut plain, &mut NoObserver, None)[0];
         let mut tree = RayTree::default();
-        let seen = tracer.trace([ray], &mut scratch, &mut watched, &mut tree, None)[0];
+        let seen = tracer.trace([ray].as_slice(), &mut scratch, &mut watched, &mut tree, None)[0];
         assert_eq!((color, plain), (seen, watched));
         assert_eq!(tree.sum(), color);
         let of_kind =
@@ -143,12 +143,12 @@ fn what_is_taken_from_a_camera_ray_is_not_there() {
             *hit = None;
         }
     };
-    let colors = tracer.trace(rays(), &mut scratch, &mut statistics, &mut NoObserver, Some(&mut take));
+    let colors = tracer.trace(rays().as_slice(), &mut scratch, &mut statistics, &mut NoObserver, Some(&mut take));
     assert!(colors.iter().step_by(2).all(|color| *color == Rgb::new(0.2, 0.4, 0.8)));
     assert!(colors.iter().skip(1).step_by(2).any(|color| *color != Rgb::new(0.2, 0.4, 0.8)));
     // No rays, no samples.
     let mut none = Statistics::default();
-    assert!(tracer.trace([], &mut scratch, &mut none, &mut NoObserver, None).is_empty());
+    assert!(tracer.trace([].as_slice(), &mut scratch, &mut none, &mut NoObserver, None).is_empty());
     assert_eq!(none, Statistics::default());
 }
 
@@ -159,7 +159,7 @@ fn rules_of_shadows_and_depth_hold() {
     let counts = |rules: Rules| {
         let tracer = Tracer { scene: &scene, integrator: &integrator, rules, instructions: InstructionSet::best() };
         let (mut scratch, mut statistics) = (Scratch::default(), Statistics::default());
-        let colors = tracer.trace(rays(), &mut scratch, &mut statistics, &mut NoObserver, None);
+        let colors = tracer.trace(rays().as_slice(), &mut scratch, &mut statistics, &mut NoObserver, None);
         (colors.iter().fold(0.0, |sum, color| sum + color.g), statistics)
     };
     let (filtered, all) = counts(RULES);

@@ -119,7 +119,7 @@ impl Watch<'_> {
             instructions: InstructionSet::best(),
         };
         let (mut tree, mut statistics) = (RayTree::default(), Statistics::default());
-        tracer.trace([(ray, 0)], &mut Scratch::default(), &mut statistics, &mut tree, None);
+        tracer.trace([(ray, 0)].as_slice(), &mut Scratch::default(), &mut statistics, &mut tree, None);
         (tree, statistics)
     }
 }
