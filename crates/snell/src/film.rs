@@ -1,10 +1,9 @@
-//! The film: sums of samples, exact, so that no order of adding or merging changes a bit.
+//! The film: sums of a pixel's samples, exact, so that no order of adding or merging changes a bit.
 //!
 //! A sample is rounded once to a whole number of 2⁻³⁰, and sums are integers. That is finer than the steps of an `f32`
 //! for every value above 2⁻⁷, far below what a display shows for the rest, and leaves room for thousands of samples at
 //! the brightest value there is.
 
-use snell_image::Image;
 use snell_math::Rgb;
 
 /// The value of one unit: 2⁻³⁰.
@@ -32,6 +31,12 @@ impl PixelSum {
             }
         }
         finite
+    }
+
+    /// What a pixel of one sample holds, from its [`PixelSum::mean`]: nothing is lost on the way, since a sum that is finer than an
+    /// `f32` is a small one, of less than 25 bits.
+    pub fn of_one(mean: Rgb) -> Self {
+        Self { sum: mean.to_array().map(|component| round(f64::from(component) / UNIT)), count: 1 }
     }
 
     /// Adds the samples of another part of the same pixel.
@@ -67,48 +72,6 @@ fn round(value: f64) -> i64 {
     (value + LAST_BIT_IS_ONE - LAST_BIT_IS_ONE) as i64
 }
 
-/// The pixels of a picture in the making.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Film {
-    width: u32,
-    height: u32,
-    pixels: Vec<PixelSum>,
-}
-
-impl Film {
-    /// Without a sample yet.
-    pub fn new(width: u32, height: u32) -> Self {
-        Self { width, height, pixels: vec![PixelSum::default(); width as usize * height as usize] }
-    }
-
-    /// Pixels in x.
-    pub fn width(&self) -> u32 {
-        self.width
-    }
-
-    /// Pixels in y.
-    pub fn height(&self) -> u32 {
-        self.height
-    }
-
-    /// One pixel, by its place in rows from the top.
-    pub fn pixel(&self, index: usize) -> &PixelSum {
-        &self.pixels[index]
-    }
-
-    /// Adds samples to one pixel.
-    pub fn add(&mut self, index: usize, samples: &PixelSum) {
-        self.pixels[index].merge(samples);
-    }
-
-    /// Scene-linear colours: each pixel the mean of its samples.
-    pub fn develop(&self) -> Image<Rgb> {
-        Image::from_fn(self.width, self.height, |x, y| {
-            self.pixels[y as usize * self.width as usize + x as usize].mean()
-        })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -135,6 +98,16 @@ mod tests {
             prop_assert_eq!(forward, merged);
             let plain: f64 = samples.iter().map(|s| f64::from(s[0])).sum::<f64>() / samples.len() as f64;
             prop_assert!((f64::from(forward.mean().r) - plain).abs() <= 1e-7 * plain.abs().max(1.0));
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+        #[test]
+        fn one_sample_is_known_by_its_mean(sample in prop::array::uniform3(prop_oneof![-2e6..2e6f32, -1e-6..1e-6f32, any::<f32>()])) {
+            let mut pixel = PixelSum::default();
+            let _ = pixel.add(Rgb::from(sample));
+            prop_assert_eq!(PixelSum::of_one(pixel.mean()), pixel);
         }
     }
 

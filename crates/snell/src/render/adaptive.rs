@@ -2,8 +2,11 @@
 //!
 //! "Different" is judged as the viewer will see it, after exposure and tone and in the sRGB encoding, whose steps are about
 //! equally visible. A pixel is unsettled after the first pass where the samples in it and its eight neighbours differ by more
-//! than a threshold in any component, and after later ones where its own do.
+//! than a threshold in any component, and after later ones where its own do: then its own samples tell better, and a neighbour's
+//! edge is not its own.
 
+use rayon::prelude::*;
+use snell_image::Image;
 use snell_image::tone::{ToneCurve, exposure_scale};
 use snell_math::Rgb;
 use snell_math::color::linear_to_srgb;
@@ -14,6 +17,8 @@ use super::settings::RenderSettings;
 const THRESHOLD: f32 = 0.03;
 /// The slope of the sRGB encoding at black, which is its largest.
 const STEEPEST: f32 = 12.92;
+/// Rows of a picture that are judged together.
+const ROWS: usize = 16;
 
 /// How samples will be shown.
 #[derive(Clone, Copy, Debug)]
@@ -29,14 +34,6 @@ pub struct Display {
 pub struct Range {
     low: [f32; 3],
     high: [f32; 3],
-}
-
-/// The range of each pixel's samples.
-#[derive(Clone, Debug)]
-pub struct Contrast {
-    width: usize,
-    height: usize,
-    ranges: Vec<Range>,
 }
 
 impl Display {
@@ -57,7 +54,7 @@ impl Range {
     const EMPTY: Self = Self { low: [f32::INFINITY; 3], high: [f32::NEG_INFINITY; 3] };
 
     #[inline]
-    fn including(mut self, other: &Self) -> Self {
+    pub fn including(mut self, other: &Self) -> Self {
         // Written so that NaN changes nothing.
         for i in 0..3 {
             self.low[i] = if other.low[i] < self.low[i] { other.low[i] } else { self.low[i] };
@@ -67,7 +64,7 @@ impl Range {
     }
 
     /// Whether the values, sRGB-encoded, differ by more than the threshold in any component.
-    fn is_wide(&self) -> bool {
+    pub fn is_wide(&self) -> bool {
         (0..3).any(|i| {
             let (low, high) = (self.low[i], self.high[i]);
             // The encoding is nowhere steeper than where it begins, so most differences are too small without asking it.
@@ -76,40 +73,37 @@ impl Range {
     }
 }
 
-impl Contrast {
-    /// Without a sample yet.
-    pub fn new(width: u32, height: u32) -> Self {
-        let pixels = width as usize * height as usize;
-        Self { width: width as usize, height: height as usize, ranges: vec![Range::EMPTY; pixels] }
-    }
-
-    /// Takes note of the range of samples of one pixel.
-    pub fn add(&mut self, pixel: usize, range: &Range) {
-        self.ranges[pixel] = self.ranges[pixel].including(range);
-    }
-
-    /// Which pixels need the next pass. After the first one, of a single sample, all depends on the neighbours; later a pixel's
-    /// own samples tell better, and a neighbour's edge is not its own.
-    pub fn unsettled(&self, pass: usize) -> Vec<bool> {
-        if pass > 1 {
-            return self.ranges.iter().map(|range| range.is_wide()).collect();
-        }
-        let mut unsettled = Vec::with_capacity(self.ranges.len());
-        // Of each pixel with the ones above and below it; then those of three columns together.
-        let mut columns = vec![Range::EMPTY; self.width];
-        for y in 0..self.height {
-            columns.fill(Range::EMPTY);
-            for row in y.saturating_sub(1)..(y + 2).min(self.height) {
-                let row = &self.ranges[row * self.width..][..self.width];
-                for (column, range) in columns.iter_mut().zip(row) {
+/// Which pixels of a picture of one sample each are unsettled.
+pub fn unsettled(picture: &Image<Rgb>, display: &Display) -> Vec<bool> {
+    let (width, height) = (picture.width() as usize, picture.height() as usize);
+    let mut unsettled = vec![false; width * height];
+    let row_of = |y: usize| &picture.pixels()[y * width..][..width];
+    unsettled.par_chunks_mut((ROWS * width).max(1)).enumerate().for_each(|(part, unsettled)| {
+        let first = part * ROWS;
+        // The values of three rows at a time, then the range of each column of three pixels, then of three columns.
+        let mut shown: Vec<Vec<Range>> = vec![vec![Range::EMPTY; width]; 3];
+        let mut columns = vec![Range::EMPTY; width];
+        let show = |y: usize, shown: &mut [Vec<Range>]| {
+            for (range, sample) in shown[y % 3].iter_mut().zip(row_of(y)) {
+                *range = display.range(std::slice::from_ref(sample));
+            }
+        };
+        (first.saturating_sub(1)..=first).for_each(|y| show(y, &mut shown));
+        for (y, unsettled) in (first..).zip(unsettled.chunks_mut(width)) {
+            if y + 1 < height {
+                show(y + 1, &mut shown);
+            }
+            columns.copy_from_slice(&shown[y % 3]);
+            for neighbour in [y.checked_sub(1), (y + 1 < height).then_some(y + 1)].into_iter().flatten() {
+                for (column, range) in columns.iter_mut().zip(&shown[neighbour % 3]) {
                     *column = column.including(range);
                 }
             }
-            unsettled.extend((0..self.width).map(|x| {
-                let neighbours = &columns[x.saturating_sub(1)..(x + 2).min(self.width)];
-                neighbours.iter().fold(Range::EMPTY, |sum, column| sum.including(column)).is_wide()
-            }));
+            for (x, unsettled) in unsettled.iter_mut().enumerate() {
+                let neighbours = &columns[x.saturating_sub(1)..(x + 2).min(width)];
+                *unsettled = neighbours.iter().fold(Range::EMPTY, |sum, column| sum.including(column)).is_wide();
+            }
         }
-        unsettled
-    }
+    });
+    unsettled
 }

@@ -21,15 +21,15 @@ pub use settings::RenderSettings;
 
 use crate::camera::Camera;
 use crate::compile::CompiledScene;
-use crate::film::{Film, PixelSum};
+use crate::film::PixelSum;
 use crate::geometry::Hit;
 use crate::integrator::{Integrator, Rules, Whitted};
 use crate::observe::{NoObserver, RayTree};
-use crate::render::adaptive::{Contrast, Display, Range};
+use crate::render::adaptive::{Display, Range};
 use crate::render::layers::{FirstHit, FirstHits};
 use crate::statistics::Statistics;
 use crate::task::RayRows;
-use crate::trace::{CameraRays, Scratch, Tracer};
+use crate::trace::{CameraRays, FirstHitWatch, Scratch, Tracer};
 use crate::viewing::ViewingError;
 
 /// Told how far rendering is, and asked whether to go on. Called from several threads.
@@ -205,109 +205,196 @@ fn split_place([x, y]: [u32; 2], sample: u32) -> u32 {
 
 /// What the tiles have given so far.
 struct Gathered {
-    film: Film,
-    contrast: Option<Contrast>,
+    /// The mean of the samples of each pixel.
+    image: Image<Rgb>,
     first_hits: Option<FirstHits>,
     statistics: Statistics,
+}
+
+/// A pixel that needs more samples than those of the first pass.
+#[derive(Clone, Copy)]
+struct Refined {
+    /// Its place in rows from the top.
+    pixel: u32,
+    sum: PixelSum,
+    /// Of all its samples.
+    range: Range,
+}
+
+/// The buffers of one worker.
+#[derive(Default)]
+struct Worker {
+    scratch: Scratch,
+    /// The places of pixels in rows from the top.
+    pixels: Vec<u32>,
+    means: Vec<Rgb>,
+    first_hits: Vec<FirstHit>,
 }
 
 impl<I: Integrator> Job<'_, I> {
     fn run(&self, progress: &dyn Progress) -> Rendering {
         let RenderSettings { width, height, .. } = *self.settings;
-        let passes = self.settings.passes();
+        let mut passes = self.settings.passes().into_iter();
         let gathered = Mutex::new(Gathered {
-            film: Film::new(width, height),
-            contrast: self.settings.is_adaptive().then(|| Contrast::new(width, height)),
+            image: Image::filled(width, height, Rgb::BLACK),
             first_hits: self.settings.layers.then(|| FirstHits::new(width, height)),
             statistics: Statistics::default(),
         });
-        let mut complete = true;
-        for (number, samples) in passes.into_iter().enumerate() {
-            let samples = Samples::new(samples);
-            let pixels = match number {
-                0 => None,
-                _ => lock(&gathered).contrast.as_ref().map(|contrast| contrast.unsettled(number)),
-            };
-            let tiles = self.tiles(pixels.as_deref());
-            progress.pass(number as u32, tiles.iter().map(|tile| tile.len() as u64).sum());
-            tiles.par_iter().for_each_init(Scratch::default, |scratch, tile| {
-                if !progress.is_cancelled() {
-                    self.render_tile(tile, &samples, scratch, &gathered, progress);
-                }
-            });
-            complete = !progress.is_cancelled();
-            if !complete {
-                break;
+        let tiles = self.tiles();
+        let samples = Samples::new(passes.next().unwrap_or(0..1));
+        progress.pass(0, u64::from(width) * u64::from(height));
+        tiles.par_iter().for_each_init(Worker::default, |worker, tile| {
+            if !progress.is_cancelled() {
+                self.render_tile(tile, &samples, worker, &gathered, progress);
             }
+        });
+        let Gathered { mut image, first_hits, mut statistics } =
+            gathered.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
+        if self.settings.is_adaptive() && !progress.is_cancelled() {
+            self.refine(passes, &tiles, &mut image, &mut statistics, progress);
         }
-        let Gathered { film, first_hits, statistics, .. } = gathered.into_inner().unwrap_or_else(|e| e.into_inner());
-        Rendering { image: film.develop(), layers: first_hits.map(FirstHits::into_layers), statistics, complete }
+        let layers = first_hits.map(FirstHits::into_layers);
+        Rendering { image, layers, statistics, complete: !progress.is_cancelled() }
     }
 
-    /// Takes the samples of a range of the sequence in each pixel of a tile.
+    /// Takes the samples of the first pass in the pixels of a tile.
     fn render_tile(
         &self,
-        tile: &[u32],
+        tile: &Tile,
         samples: &Samples,
-        scratch: &mut Scratch,
+        worker: &mut Worker,
         gathered: &Mutex<Gathered>,
         progress: &dyn Progress,
     ) {
         let per_pixel = samples.places.len();
+        let width = self.settings.width;
+        let Worker { scratch, pixels, means, first_hits } = worker;
+        pixels.clear();
+        pixels.extend(tile.pixels(width));
+        means.clear();
+        first_hits.clear();
         let mut statistics = Statistics::default();
-        let display = self.settings.is_adaptive().then(|| Display::new(self.settings));
-        let mut sums: Vec<PixelSum> = Vec::new();
-        let mut ranges: Vec<Range> = Vec::new();
-        let mut first_hits: Vec<FirstHit> = Vec::new();
         // As many pixels at once as keep the queues in the caches.
-        for pixels in tile.chunks((MAX_QUEUE / per_pixel).max(1)) {
+        for pixels in pixels.chunks((MAX_QUEUE / per_pixel).max(1)) {
             if progress.is_cancelled() {
                 break;
             }
-            let rays = TileRays { camera: self.camera, width: self.settings.width, pixels, samples };
+            let rays = TileRays { camera: self.camera, width, pixels, samples };
             let mut watch = |number: usize, ray: &Ray, hit: &mut Option<Hit>| {
-                let far = self.camera.far_distance(ray);
-                if hit.is_some_and(|hit| hit.t > far) {
-                    *hit = None;
-                }
-                if self.settings.layers && samples.first == 0 && number % per_pixel == 0 {
+                self.cut_far(ray, hit);
+                if self.settings.layers && number % per_pixel == 0 {
                     first_hits.push(FirstHit::new(self.scene, self.camera, ray, hit.as_ref()));
                 }
             };
-            let is_watched = self.settings.layers || self.camera.planes()[1] > f64::NEG_INFINITY;
-            let watch: Option<&mut dyn FnMut(usize, &Ray, &mut Option<Hit>)> =
-                if is_watched { Some(&mut watch) } else { None };
+            let is_watched = self.settings.layers || self.has_far_plane();
+            let watch: Option<&mut FirstHitWatch<'_>> = if is_watched { Some(&mut watch) } else { None };
             let colors = self.tracer().trace(&rays, scratch, &mut statistics, &mut NoObserver, watch);
-            // All that can be done before the lock.
-            sums.clear();
-            sums.extend(colors.chunks(per_pixel).map(|colors| {
+            let mut nonfinite = 0;
+            means.extend(colors.chunks_exact(per_pixel).map(|colors| {
                 let mut sum = PixelSum::default();
                 for &color in colors {
-                    statistics.nonfinite_samples += u64::from(!sum.add(color));
+                    nonfinite += u64::from(!sum.add(color));
                 }
-                sum
+                sum.mean()
             }));
-            ranges.clear();
-            if let Some(display) = display {
-                ranges.extend(colors.chunks(per_pixel).map(|colors| display.range(colors)));
-            }
-            let mut gathered = lock(gathered);
-            for (&pixel, sum) in pixels.iter().zip(&sums) {
-                gathered.film.add(pixel as usize, sum);
-            }
-            if let Some(contrast) = &mut gathered.contrast {
-                for (&pixel, range) in pixels.iter().zip(&ranges) {
-                    contrast.add(pixel as usize, range);
-                }
-            }
-            if let Some(all) = &mut gathered.first_hits {
-                for (&pixel, first) in pixels.iter().zip(first_hits.drain(..)) {
-                    all.set(pixel as usize, first);
-                }
+            statistics.nonfinite_samples += nonfinite;
+        }
+        let mut gathered = lock(gathered);
+        gathered.statistics.merge(&statistics);
+        tile.put(means, &mut gathered.image);
+        if let Some(all) = &mut gathered.first_hits {
+            for (&pixel, first) in pixels.iter().zip(first_hits.drain(..)) {
+                all.set(pixel as usize, first);
             }
         }
-        lock(gathered).statistics.merge(&statistics);
-        progress.advance(tile.len() as u64, statistics.rays());
+        drop(gathered);
+        progress.advance(pixels.len() as u64, statistics.rays());
+    }
+
+    /// Takes more samples where the picture needs them, pass by pass.
+    fn refine(
+        &self,
+        passes: impl Iterator<Item = std::ops::Range<u32>>,
+        tiles: &[Tile],
+        image: &mut Image<Rgb>,
+        statistics: &mut Statistics,
+        progress: &dyn Progress,
+    ) {
+        let display = Display::new(self.settings);
+        let unsettled = adaptive::unsettled(image, &display);
+        // In the order of tiles, so that neighbours are traced together.
+        let pixels = tiles.iter().flat_map(|tile| tile.pixels(self.settings.width));
+        let mut refined: Vec<Refined> = pixels
+            .filter(|&pixel| unsettled[pixel as usize])
+            .map(|pixel| {
+                let mean = image.pixels()[pixel as usize];
+                Refined { pixel, sum: PixelSum::of_one(mean), range: display.range(&[mean]) }
+            })
+            .collect();
+        for (number, samples) in (1..).zip(passes) {
+            let samples = Samples::new(samples);
+            progress.pass(number, refined.len() as u64);
+            let portion = (MAX_QUEUE / samples.places.len()).max(1);
+            let counted = refined
+                .par_chunks_mut(portion)
+                .map_init(Worker::default, |worker, portion| {
+                    self.refine_portion(portion, &samples, &display, worker, progress)
+                })
+                .reduce(Statistics::default, |mut sum, part| {
+                    sum.merge(&part);
+                    sum
+                });
+            statistics.merge(&counted);
+            for Refined { pixel, sum, .. } in &refined {
+                image.pixels_mut()[*pixel as usize] = sum.mean();
+            }
+            if progress.is_cancelled() {
+                return;
+            }
+            refined.retain(|pixel| pixel.range.is_wide());
+        }
+    }
+
+    /// Takes the samples of a later pass in some pixels.
+    fn refine_portion(
+        &self,
+        portion: &mut [Refined],
+        samples: &Samples,
+        display: &Display,
+        worker: &mut Worker,
+        progress: &dyn Progress,
+    ) -> Statistics {
+        let mut statistics = Statistics::default();
+        if progress.is_cancelled() {
+            return statistics;
+        }
+        let Worker { scratch, pixels, .. } = worker;
+        pixels.clear();
+        pixels.extend(portion.iter().map(|refined| refined.pixel));
+        let rays = TileRays { camera: self.camera, width: self.settings.width, pixels, samples };
+        let mut watch = |_: usize, ray: &Ray, hit: &mut Option<Hit>| self.cut_far(ray, hit);
+        let watch: Option<&mut FirstHitWatch<'_>> = if self.has_far_plane() { Some(&mut watch) } else { None };
+        let colors = self.tracer().trace(&rays, scratch, &mut statistics, &mut NoObserver, watch);
+        let mut nonfinite = 0;
+        for (refined, colors) in portion.iter_mut().zip(colors.chunks_exact(samples.places.len())) {
+            for &color in colors {
+                nonfinite += u64::from(!refined.sum.add(color));
+            }
+            refined.range = refined.range.including(&display.range(colors));
+        }
+        statistics.nonfinite_samples += nonfinite;
+        progress.advance(portion.len() as u64, statistics.rays());
+        statistics
+    }
+
+    fn has_far_plane(&self) -> bool {
+        self.camera.planes()[1] > f64::NEG_INFINITY
+    }
+
+    /// What lies beyond the far plane is not there.
+    fn cut_far(&self, ray: &Ray, hit: &mut Option<Hit>) {
+        let far = self.camera.far_distance(ray);
+        *hit = hit.filter(|hit| hit.t <= far);
     }
 
     /// The ray of a sample through a place in a pixel, and the number of the place where it splits white light.
@@ -323,8 +410,8 @@ impl<I: Integrator> Job<'_, I> {
         Tracer { scene: self.scene, integrator: self.integrator, rules, instructions }
     }
 
-    /// The picture, or the given pixels of it, in square tiles; each is a list of pixel places.
-    fn tiles(&self, only: Option<&[bool]>) -> Vec<Vec<u32>> {
+    /// The picture in square tiles.
+    fn tiles(&self) -> Vec<Tile> {
         let RenderSettings { width, height, tile_size, .. } = *self.settings;
         let size = tile_size.max(1);
         let mut tiles = Vec::new();
@@ -332,16 +419,33 @@ impl<I: Integrator> Job<'_, I> {
             for left in (0..width).step_by(size as usize) {
                 let rows = top..top.saturating_add(size).min(height);
                 let columns = left..left.saturating_add(size).min(width);
-                let tile: Vec<u32> = rows
-                    .flat_map(|y| columns.clone().map(move |x| y * width + x))
-                    .filter(|&pixel| only.is_none_or(|only| only[pixel as usize]))
-                    .collect();
-                if !tile.is_empty() {
-                    tiles.push(tile);
-                }
+                tiles.push(Tile { rows, columns });
             }
         }
         tiles
+    }
+}
+
+/// A part of the picture that is rendered by one thread.
+struct Tile {
+    rows: std::ops::Range<u32>,
+    columns: std::ops::Range<u32>,
+}
+
+impl Tile {
+    /// The places of its pixels in rows of the picture from the top.
+    fn pixels(&self, width: u32) -> impl Iterator<Item = u32> {
+        let columns = self.columns.clone();
+        self.rows.clone().flat_map(move |y| columns.clone().map(move |x| y * width + x))
+    }
+
+    /// Puts its colours, or as many of the first as there are, into the picture.
+    fn put(&self, colors: &[Rgb], image: &mut Image<Rgb>) {
+        let width = image.width() as usize;
+        for (y, colors) in self.rows.clone().zip(colors.chunks(self.columns.len())) {
+            let first = y as usize * width + self.columns.start as usize;
+            image.pixels_mut()[first..][..colors.len()].copy_from_slice(colors);
+        }
     }
 }
 

@@ -4,9 +4,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use snell_math::{Point3, Rgb, Vector3};
 use snell_scene::scene::{Antialiasing, Background, Frame, Material, Object, Scene, Shape, Texture, Tone};
-use snell_testkit::must_fail;
+use snell_image::Image;
+use snell_testkit::{TestRng, must_fail};
 
-use super::adaptive::{Contrast, Display};
+use super::adaptive::{Display, unsettled};
 use super::{Job, Progress, RenderSettings, Whitted, explain, render};
 use crate::compile::CompiledScene;
 use crate::viewing::ViewingError;
@@ -52,26 +53,25 @@ impl Progress for Told {
 }
 
 #[test]
-fn tiles_cover_every_wanted_pixel_once() {
+fn tiles_cover_every_pixel_once() {
     let scene = ball();
     let compiled = CompiledScene::build(&scene).expect("it compiles");
-    let cover = |width: u32, height: u32, tile_size: u32, only: Option<&[bool]>| {
+    for (width, height, tile_size) in [(1, 1, 32), (7, 5, 1), (33, 65, 32), (10, 3, 4), (5, 5, 0), (3, 4, u32::MAX)] {
         let settings = RenderSettings { tile_size, ..settings(&scene, width, height) };
         let camera = settings.camera(&compiled).expect("a camera");
         let integrator = Whitted::new(&compiled, &camera, settings.bands);
-        let tiles = Job { scene: &compiled, integrator: &integrator, camera: &camera, settings: &settings }.tiles(only);
+        let tiles = Job { scene: &compiled, integrator: &integrator, camera: &camera, settings: &settings }.tiles();
         let mut covered = vec![0; (width * height) as usize];
+        let mut picture = Image::filled(width, height, Rgb::BLACK);
         for tile in tiles {
-            assert!(!tile.is_empty() && tile.len() as u64 <= u64::from(tile_size.max(1)).pow(2));
-            tile.into_iter().for_each(|pixel| covered[pixel as usize] += 1);
+            let pixels: Vec<u32> = tile.pixels(width).collect();
+            assert!(!pixels.is_empty() && pixels.len() as u64 <= u64::from(tile_size.max(1)).pow(2));
+            pixels.iter().for_each(|&pixel| covered[pixel as usize] += 1);
+            let colors: Vec<Rgb> = pixels.iter().map(|&pixel| Rgb::gray(pixel as f32 + 1.0)).collect();
+            tile.put(&colors, &mut picture);
         }
-        covered
-    };
-    for (width, height, tile_size) in [(1, 1, 32), (7, 5, 1), (33, 65, 32), (10, 3, 4), (5, 5, 0), (3, 4, u32::MAX)] {
-        assert!(cover(width, height, tile_size, None).into_iter().all(|count| count == 1));
-        let only: Vec<bool> = (0..width * height).map(|pixel| pixel % 3 == 0).collect();
-        let expected: Vec<i32> = only.iter().map(|&wanted| i32::from(wanted)).collect();
-        assert_eq!(cover(width, height, tile_size, Some(&only)), expected);
+        assert!(covered.into_iter().all(|count| count == 1));
+        assert!(picture.pixels().iter().zip(1..).all(|(color, number)| *color == Rgb::gray(number as f32)));
     }
 }
 
@@ -111,11 +111,8 @@ fn what_is_different_is_judged_as_it_is_shown() {
         let scene = ball();
         let settings = RenderSettings { tone, exposure, ..settings(&scene, 3, 1) };
         let display = Display::new(&settings);
-        let mut contrast = Contrast::new(3, 1);
-        for (pixel, color) in colors.into_iter().enumerate() {
-            contrast.add(pixel, &display.range(&[Rgb::gray(color)]));
-        }
-        contrast.unsettled(1).into_iter().map(|unsettled| !unsettled).collect::<Vec<_>>()
+        let picture = Image::from_fn(3, 1, |x, _| Rgb::gray(colors[x as usize]));
+        unsettled(&picture, &display).into_iter().map(|unsettled| !unsettled).collect::<Vec<_>>()
     };
     assert_eq!(settled([0.5; 3], Tone::None, 0.0), [true; 3]);
     assert_eq!(settled([0.5, 0.5, 0.6], Tone::None, 0.0), [true, false, false]);
@@ -128,10 +125,37 @@ fn what_is_different_is_judged_as_it_is_shown() {
     // Later a pixel's own samples count and not its neighbours'.
     let scene = ball();
     let display = Display::new(&settings(&scene, 2, 1));
-    let mut contrast = Contrast::new(2, 1);
-    contrast.add(0, &display.range(&[Rgb::gray(0.1), Rgb::gray(0.9)]));
-    contrast.add(1, &display.range(&[Rgb::gray(0.9), Rgb::gray(0.9)]));
-    assert_eq!((contrast.unsettled(1), contrast.unsettled(2)), (vec![true, true], vec![true, false]));
+    let own = |samples: [f32; 2]| display.range(&samples.map(Rgb::gray)).is_wide();
+    assert_eq!([own([0.1, 0.9]), own([0.9, 0.9])], [true, false]);
+}
+
+/// Against the definition: all nine samples of each neighbourhood, every pair of them.
+#[test]
+fn neighbours_are_those_of_all_sides() {
+    let scene = ball();
+    let display = Display::new(&settings(&scene, 1, 1));
+    let mut rng = TestRng::new(5);
+    for (width, height) in [(1, 1), (1, 40), (40, 1), (7, 33), (20, 16), (3, 17)] {
+        let mut sample = || if rng.below(9) == 0 { 0.5 + 0.06 * rng.unit_f32() } else { 0.5 };
+        let picture = Image::from_fn(width, height, |_, _| Rgb::new(sample(), 0.5, sample()));
+        let expected: Vec<bool> = (0..height as i64)
+            .flat_map(|y| (0..width as i64).map(move |x| (x, y)))
+            .map(|(x, y)| {
+                let near = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (x + dx, y + dy)));
+                let near: Vec<Rgb> = near
+                    .filter_map(|(x, y)| picture.get(u32::try_from(x).ok()?, u32::try_from(y).ok()?).copied())
+                    .collect();
+                display.range(&near).is_wide()
+            })
+            .collect();
+        let check = |found: &[bool]| assert_eq!(found, expected, "{width} x {height}");
+        check(&unsettled(&picture, &display));
+        must_fail("one pixel is judged otherwise", || {
+            let mut other = unsettled(&picture, &display);
+            other[0] = !other[0];
+            check(&other);
+        });
+    }
 }
 
 #[test]

@@ -71,7 +71,7 @@ impl<I: Integrator> Tracer<'_, I> {
         scratch: &'s mut Scratch,
         statistics: &mut Statistics,
         observer: &mut O,
-        first_hits: Option<&mut dyn FnMut(usize, &Ray, &mut Option<Hit>)>,
+        first_hits: Option<&mut FirstHitWatch<'_>>,
     ) -> &'s [Rgb] {
         let count = camera_rays.count();
         scratch.current[0].fill(count);
@@ -81,8 +81,8 @@ impl<I: Integrator> Tracer<'_, I> {
         statistics.camera_rays += count as u64;
         statistics.max_depth = statistics.max_depth.max(u32::from(count > 0));
         let next_id = count as u32;
-        let generations = Generations { tracer: self, scratch: &mut *scratch, statistics, observer, first_hits, next_id };
-        let whole = Whole { camera_rays, generations };
+        let generations = Generations { tracer: self, scratch: &mut *scratch, statistics, observer, next_id };
+        let whole = Whole { camera_rays, generations, first_hits };
         if O::WATCHES {
             // A watcher is told of one ray after the other.
             whole.run::<f64>();
@@ -94,29 +94,28 @@ impl<I: Integrator> Tracer<'_, I> {
 }
 
 /// What is left to do once the camera rays are in the first queue: generation after generation.
-struct Generations<'t, 'a, 'f, I, O> {
+struct Generations<'t, 'a, I, O> {
     tracer: &'t Tracer<'a, I>,
     scratch: &'t mut Scratch,
     statistics: &'t mut Statistics,
     observer: &'t mut O,
-    first_hits: Option<&'f mut dyn FnMut(usize, &Ray, &mut Option<Hit>)>,
     next_id: u32,
 }
 
 /// All there is to do: camera rays, then generation after generation.
-struct Whole<'c, 't, 'a, 'f, C: ?Sized, I, O> {
+struct Whole<'c, 't, 'a, 'f, 'w, C: ?Sized, I, O> {
     camera_rays: &'c C,
-    generations: Generations<'t, 'a, 'f, I, O>,
+    generations: Generations<'t, 'a, I, O>,
+    first_hits: Option<&'f mut FirstHitWatch<'w>>,
 }
 
-impl<C: CameraRays + ?Sized, I: Integrator, O: Observer> Work for Whole<'_, '_, '_, '_, C, I, O> {
+impl<C: CameraRays + ?Sized, I: Integrator, O: Observer> Work for Whole<'_, '_, '_, '_, '_, C, I, O> {
     type Output = ();
 
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self { camera_rays, mut generations } = self;
+        let Self { camera_rays, mut generations, mut first_hits } = self;
         L::stage(Begin(camera_rays, &mut generations));
-        let mut first_hits = generations.first_hits.take();
         while generations.scratch.current.iter().any(|queue| !queue.is_empty()) {
             L::stage(Intersect(&mut generations));
             if let Some(first_hits) = first_hits.take() {
@@ -130,7 +129,7 @@ impl<C: CameraRays + ?Sized, I: Integrator, O: Observer> Work for Whole<'_, '_, 
     }
 }
 
-impl<I: Integrator, O: Observer> Generations<'_, '_, '_, I, O> {
+impl<I: Integrator, O: Observer> Generations<'_, '_, I, O> {
     /// Makes the camera rays, the first generation, which carry all light.
     #[inline(always)]
     fn begin<L: Lanes>(&mut self, camera_rays: &(impl CameraRays + ?Sized)) {
@@ -186,7 +185,7 @@ impl<I: Integrator, O: Observer> Generations<'_, '_, '_, I, O> {
     }
 
     /// Shows the hits of camera rays, which are in the first queue alone.
-    fn show_first_hits(&mut self, first_hits: &mut dyn FnMut(usize, &Ray, &mut Option<Hit>)) {
+    fn show_first_hits(&mut self, first_hits: &mut FirstHitWatch<'_>) {
         let Scratch { current, hits, .. } = &mut *self.scratch;
         for ((rays, active), hits) in current[0].rows().zip(hits) {
             for lane in active.lanes() {
@@ -239,6 +238,9 @@ impl<I: Integrator, O: Observer> Generations<'_, '_, '_, I, O> {
     }
 }
 
+/// Is shown the number of each camera ray, the ray and what it met, and may take that away.
+pub type FirstHitWatch<'f> = dyn FnMut(usize, &Ray, &mut Option<Hit>) + 'f;
+
 /// Rays from the camera, one a sample.
 pub trait CameraRays {
     /// How many.
@@ -271,7 +273,7 @@ struct Intersect<'g, G>(&'g mut G);
 struct Shade<'g, G>(&'g mut G);
 struct Answer<'g, G>(&'g mut G);
 
-impl<C: CameraRays + ?Sized, I: Integrator, O: Observer> Work for Begin<'_, '_, C, Generations<'_, '_, '_, I, O>> {
+impl<C: CameraRays + ?Sized, I: Integrator, O: Observer> Work for Begin<'_, '_, C, Generations<'_, '_, I, O>> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
@@ -279,7 +281,7 @@ impl<C: CameraRays + ?Sized, I: Integrator, O: Observer> Work for Begin<'_, '_, 
     }
 }
 
-impl<I: Integrator, O: Observer> Work for Intersect<'_, Generations<'_, '_, '_, I, O>> {
+impl<I: Integrator, O: Observer> Work for Intersect<'_, Generations<'_, '_, I, O>> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
@@ -287,7 +289,7 @@ impl<I: Integrator, O: Observer> Work for Intersect<'_, Generations<'_, '_, '_, 
     }
 }
 
-impl<I: Integrator, O: Observer> Work for Shade<'_, Generations<'_, '_, '_, I, O>> {
+impl<I: Integrator, O: Observer> Work for Shade<'_, Generations<'_, '_, I, O>> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
@@ -295,7 +297,7 @@ impl<I: Integrator, O: Observer> Work for Shade<'_, Generations<'_, '_, '_, I, O
     }
 }
 
-impl<I: Integrator, O: Observer> Work for Answer<'_, Generations<'_, '_, '_, I, O>> {
+impl<I: Integrator, O: Observer> Work for Answer<'_, Generations<'_, '_, I, O>> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
