@@ -98,6 +98,7 @@ impl Rgb {
 }
 
 impl From<[f32; 3]> for Rgb {
+    #[inline]
     fn from([r, g, b]: [f32; 3]) -> Self {
         Self { r, g, b }
     }

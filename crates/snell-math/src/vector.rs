@@ -65,6 +65,7 @@ macro_rules! components {
             }
         }
         impl From<[f64; 3]> for $type {
+            #[inline]
             fn from(a: [f64; 3]) -> Self {
                 Self(DVec3::from_array(a))
             }

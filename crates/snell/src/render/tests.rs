@@ -2,9 +2,9 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use snell_image::Image;
 use snell_math::{Point3, Rgb, Vector3};
 use snell_scene::scene::{Antialiasing, Background, Frame, Material, Object, Scene, Shape, Texture, Tone};
-use snell_image::Image;
 use snell_testkit::{TestRng, must_fail};
 
 use super::adaptive::{Display, unsettled};
@@ -175,7 +175,7 @@ fn layers_say_what_each_pixel_shows() {
             let height = 1.0 - px * px - py * py;
             let (z, expected, number) =
                 if height > 0.0 { (height.sqrt(), [px, py, height.sqrt()], 1) } else { (-3.0, [0.0, 0.0, 1.0], 2) };
-            let at = |image: &snell_image::Image<f32>| *image.get(x, y).expect("a pixel");
+            let at = |image: &Image<f32>| *image.get(x, y).expect("a pixel");
             assert!((at(&depth) - (5.0 - z) * factor).abs() < 1e-5);
             let normal = normal.get(x, y).expect("a pixel");
             assert!(normal.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-5), "{normal:?} {expected:?}");

@@ -26,9 +26,7 @@ use crate::integrator::{Integrator, QUEUES, Rules, Sink};
 use crate::interaction::SurfaceRows;
 use crate::observe::Observer;
 use crate::statistics::Statistics;
-use crate::task::{
-    MediumStack, MediumStacks, QuestionQueue, RayKind, RayNotes, RayQueue, RayRows, column, set_column,
-};
+use crate::task::{MediumStack, MediumStacks, QuestionQueue, RayKind, RayNotes, RayQueue, RayRows, column, set_column};
 
 /// The queues and buffers of one worker, reused from tile to tile so that rays cost no allocation.
 #[derive(Debug, Default)]
