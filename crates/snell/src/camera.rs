@@ -4,6 +4,7 @@
 //! covers [i, i + 1) × [j, j + 1). Eye space is right-handed: x right (u), y up (v), looking along −z (w = −gaze), as in
 //! Shirley et al., *Fundamentals of Computer Graphics*, chapter 7.
 
+use snell_math::lanes::{LaneVector, Lanes};
 use snell_math::{Point3, Ray, Vector3, portable};
 use snell_scene::scene;
 
@@ -121,14 +122,23 @@ impl Camera {
     /// window gives one, and on the plane through the eye for an orthographic camera.
     #[inline]
     pub fn generate_ray(&self, x: f64, y: f64) -> Ray {
-        let [window_x, window_y] = self.window_from_raster.point([x, y]);
-        let across = self.right * window_x + self.up * window_y;
+        let [origin, direction] = self.generate_rays::<f64>(x, y);
+        Ray::new(origin.into(), direction.into())
+    }
+
+    /// As [`Camera::generate_ray`], side by side: origins and directions.
+    #[inline(always)]
+    pub fn generate_rays<L: Lanes>(&self, x: L, y: L) -> [LaneVector<L>; 2] {
+        let [window_x, window_y] = self.window_from_raster.point_lanes([x, y]);
+        let (right, up) = (LaneVector::splat(self.right.to_array()), LaneVector::splat(self.up.to_array()));
+        let (eye, back) = (LaneVector::splat(self.eye.to_array()), LaneVector::splat(self.back.to_array()));
+        let across = right * window_x + up * window_y;
         match self.projection {
             Projection::Perspective => {
-                let to_window = across - self.back;
-                Ray::new(self.eye + to_window * -self.near, to_window.normalize())
+                let to_window = across - back;
+                [eye + to_window * L::splat(-self.near), to_window.normalize()]
             }
-            Projection::Orthographic => Ray::new(self.eye + across + self.back * self.near, -self.back),
+            Projection::Orthographic => [eye + across + back * L::splat(self.near), -back],
         }
     }
 

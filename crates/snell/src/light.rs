@@ -1,5 +1,6 @@
 //! Lights without extent, as the lecture has them: where they are, and how much light arrives at a point.
 
+use snell_math::lanes::{Bits, LaneColor, LaneVector, Lanes};
 use snell_math::{Point3, Rgb, Vector3, portable};
 use snell_scene::scene;
 
@@ -29,6 +30,17 @@ pub struct Illumination {
     pub irradiance: Rgb,
 }
 
+/// As [`Illumination`], side by side.
+#[derive(Clone, Copy, Debug)]
+pub struct LaneIllumination<L: Lanes> {
+    /// See [`Illumination::to_light`].
+    pub to_light: LaneVector<L>,
+    /// See [`Illumination::distance`].
+    pub distance: L,
+    /// See [`Illumination::irradiance`].
+    pub irradiance: LaneColor<L::Floats>,
+}
+
 impl Light {
     /// From the scene's light.
     pub fn new(light: &scene::Light) -> Self {
@@ -49,37 +61,48 @@ impl Light {
     /// What arrives at a world point; `None` where it is nothing: outside a spot's cone, or at the light itself.
     #[inline]
     pub fn illuminate(&self, point: Point3) -> Option<Illumination> {
+        let (lit, LaneIllumination { to_light, distance, irradiance }) = self.illuminate_lanes::<f64>(point.into());
+        let irradiance = Rgb::new(irradiance.r, irradiance.g, irradiance.b);
+        lit.any().then(|| Illumination { to_light: to_light.into(), distance, irradiance })
+    }
+
+    /// As [`Light::illuminate`], for points side by side: which lanes are lit, and how.
+    #[inline(always)]
+    pub fn illuminate_lanes<L: Lanes>(&self, point: LaneVector<L>) -> (Bits, LaneIllumination<L>) {
+        let intensity = LaneColor::splat(self.intensity);
         let position = match &self.place {
             Place::Directional { to_light } => {
-                return Some(Illumination { to_light: *to_light, distance: f64::INFINITY, irradiance: self.intensity });
+                let to_light = LaneVector::splat(to_light.to_array());
+                let distance = L::splat(f64::INFINITY);
+                return (L::all(), LaneIllumination { to_light, distance, irradiance: intensity });
             }
-            Place::Point { position } | Place::Spot { position, .. } => *position,
+            Place::Point { position } | Place::Spot { position, .. } => LaneVector::splat(position.to_array()),
         };
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
         let offset = position - point;
-        let distance = offset.length();
-        if distance <= 0.0 {
-            return None;
-        }
-        let to_light = offset * (1.0 / distance);
+        let distance = offset.length_squared().sqrt();
+        let mut lit = L::all().without(distance.le(zero));
+        let to_light = offset * (one / distance);
         let mut share = match self.falloff {
-            scene::Falloff::None => 1.0,
-            scene::Falloff::Linear => 1.0 / distance,
-            scene::Falloff::InverseSquare => 1.0 / (distance * distance),
+            scene::Falloff::None => one,
+            scene::Falloff::Linear => one / distance,
+            scene::Falloff::InverseSquare => one / (distance * distance),
             scene::Falloff::Polynomial { constant, linear, quadratic } => {
-                (1.0 / (constant + distance * (linear + distance * quadratic))).min(1.0)
+                let (constant, linear, quadratic) = (L::splat(constant), L::splat(linear), L::splat(quadratic));
+                let share = one / (constant + distance * (linear + distance * quadratic));
+                share.or_where_not(share.lt(one), one)
             }
         };
         if let Place::Spot { axis, cosine_cone, cosine_full, .. } = self.place {
-            let cosine = -axis.dot(to_light);
-            if cosine <= cosine_cone {
-                return None;
-            }
-            if cosine < cosine_full {
-                let x = (cosine - cosine_cone) / (cosine_full - cosine_cone);
-                share *= x * x * (3.0 - 2.0 * x);
+            let cosine = -LaneVector::splat(axis.to_array()).dot(to_light);
+            lit = lit.without(cosine.le(L::splat(cosine_cone)));
+            let in_rim = cosine.lt(L::splat(cosine_full));
+            if in_rim.any() {
+                let x = (cosine - L::splat(cosine_cone)) / L::splat(cosine_full - cosine_cone);
+                share = (share * (x * x * (L::splat(3.0) - L::splat(2.0) * x))).or_where_not(in_rim, share);
             }
         }
-        Some(Illumination { to_light, distance, irradiance: self.intensity * share as f32 })
+        (lit, LaneIllumination { to_light, distance, irradiance: intensity * share.to_floats() })
     }
 }
 

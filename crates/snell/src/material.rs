@@ -4,6 +4,7 @@
 //! and asks nothing of the heap. Its lobes are of two kinds, as the lecture's `shade` has them: those summed over lights
 //! (diffuse, highlight) and those that spawn rays (mirror, interface).
 
+use snell_math::lanes::{Bits, Floats, LaneColor, LaneVector, Lanes, WIDTH};
 use snell_math::{Rgb, Vector3, portable};
 use snell_scene::Id;
 use snell_scene::scene;
@@ -70,39 +71,135 @@ impl Bsdf {
         !(self.diffuse.is_black() && self.specular.is_black())
     }
 
-    /// The lobes summed over lights, per unit of irradiance on a surface that faces the light, with the cosine: Lambert's
-    /// k_d (N·L) and Phong's k_s (R·L)^n, R the mirrored `wo` (Phong 1975). The reflectances are the lecture's: a white
-    /// surface facing a light of intensity one is one.
-    ///
-    /// `wo` leads to the viewer and `wi` to the light, both leaving the surface; `normal` is on the viewer's side. All unit.
+    /// The lobes summed over lights, per unit of irradiance on a surface that faces the light, see [`LaneBsdf::reflect_light`].
     #[inline]
     pub fn reflect_light(&self, normal: Vector3, wo: Vector3, wi: Vector3) -> LocalReflection {
-        let cosine = normal.dot(wi);
-        if cosine <= 0.0 {
-            return LocalReflection { diffuse: Rgb::BLACK, specular: Rgb::BLACK };
-        }
-        let specular = if self.specular.is_black() {
-            Rgb::BLACK
-        } else {
-            let mirrored = normal * (2.0 * normal.dot(wo)) - wo;
-            self.specular * highlight(mirrored.dot(wi), self.shininess)
-        };
-        LocalReflection { diffuse: self.diffuse * cosine as f32, specular }
+        let [diffuse, specular] = LaneBsdf::<f64>::splat(self).reflect_light(normal.into(), wo.into(), wi.into());
+        let color = |lane: LaneColor<f32>| Rgb::new(lane.r, lane.g, lane.b);
+        LocalReflection { diffuse: color(diffuse), specular: color(specular) }
     }
 }
 
-/// The cosine to the power of the exponent, clipped at 0.
-#[inline]
-fn highlight(cosine: f64, shininess: f32) -> f32 {
-    if cosine <= 0.0 {
-        return 0.0;
+/// What surfaces of one material do with light, side by side. The fields are those of [`Bsdf`].
+#[derive(Clone, Copy, Debug)]
+pub struct LaneBsdf<L: Lanes> {
+    /// See [`Bsdf::emission`].
+    pub emission: LaneColor<L::Floats>,
+    /// See [`Bsdf::ambient`].
+    pub ambient: LaneColor<L::Floats>,
+    /// See [`Bsdf::diffuse`].
+    pub diffuse: LaneColor<L::Floats>,
+    /// See [`Bsdf::specular`].
+    pub specular: LaneColor<L::Floats>,
+    /// See [`Bsdf::mirror`].
+    pub mirror: LaneColor<L::Floats>,
+    /// See [`Interface::reflect`]; black without an interface.
+    pub reflect: LaneColor<L::Floats>,
+    /// See [`Interface::transmit`]; black without an interface.
+    pub transmit: LaneColor<L::Floats>,
+    /// See [`Bsdf::shininess`].
+    pub shininess: f32,
+    /// See [`Interface::fresnel`]; `None` without an interface.
+    pub fresnel: Option<bool>,
+    /// See [`Bsdf::one_sided`].
+    pub one_sided: bool,
+}
+
+impl<L: Lanes> LaneBsdf<L> {
+    /// The same in all lanes.
+    #[inline(always)]
+    pub fn splat(bsdf: &Bsdf) -> Self {
+        let (reflect, transmit) = bsdf.interface.map_or((Rgb::BLACK, Rgb::BLACK), |i| (i.reflect, i.transmit));
+        Self {
+            emission: LaneColor::splat(bsdf.emission),
+            ambient: LaneColor::splat(bsdf.ambient),
+            diffuse: LaneColor::splat(bsdf.diffuse),
+            specular: LaneColor::splat(bsdf.specular),
+            mirror: LaneColor::splat(bsdf.mirror),
+            reflect: LaneColor::splat(reflect),
+            transmit: LaneColor::splat(transmit),
+            shininess: bsdf.shininess,
+            fresnel: bsdf.interface.map(|interface| interface.fresnel),
+            one_sided: bsdf.one_sided,
+        }
     }
-    // Below this the result is no f32 but zero; the logarithm is by far the dearest part of a small scene's shading.
-    let exponent = f64::from(shininess);
-    if exponent * (1.0 - cosine) > 104.0 {
-        return 0.0;
+
+    /// The same material at places whose colours differ; `bsdfs` are those of some lanes, and there are some.
+    #[inline(always)]
+    pub fn gather(bsdfs: impl Iterator<Item = (usize, Bsdf)>) -> Self {
+        let mut rows = [[[0.0_f32; WIDTH]; 3]; 7];
+        let mut last = Bsdf::BLACK;
+        for (lane, bsdf) in bsdfs {
+            let (reflect, transmit) = bsdf.interface.map_or((Rgb::BLACK, Rgb::BLACK), |i| (i.reflect, i.transmit));
+            let colors = [bsdf.emission, bsdf.ambient, bsdf.diffuse, bsdf.specular, bsdf.mirror, reflect, transmit];
+            for (rows, color) in rows.iter_mut().zip(colors) {
+                for (row, component) in rows.iter_mut().zip(color.to_array()) {
+                    row[lane] = component;
+                }
+            }
+            last = bsdf;
+        }
+        let [emission, ambient, diffuse, specular, mirror, reflect, transmit] = &rows;
+        Self {
+            emission: LaneColor::load(emission, 0),
+            ambient: LaneColor::load(ambient, 0),
+            diffuse: LaneColor::load(diffuse, 0),
+            specular: LaneColor::load(specular, 0),
+            mirror: LaneColor::load(mirror, 0),
+            reflect: LaneColor::load(reflect, 0),
+            transmit: LaneColor::load(transmit, 0),
+            ..Self::splat(&last)
+        }
     }
-    portable::pow(cosine.min(1.0), exponent) as f32
+
+    /// The lanes where lights matter.
+    #[inline(always)]
+    pub fn is_lit(&self) -> Bits {
+        L::all().without(self.diffuse.is_black() & self.specular.is_black())
+    }
+
+    /// The lobes summed over lights, the diffuse one and the highlight, per unit of irradiance on a surface that faces the
+    /// light, with the cosine: Lambert's k_d (N·L) and Phong's k_s (R·L)^n, R the mirrored `wo` (Phong 1975). The reflectances
+    /// are the lecture's: a white surface facing a light of intensity one is one.
+    ///
+    /// `wo` leads to the viewer and `wi` to the light, both leaving the surface; `normal` is on the viewer's side. All unit.
+    #[inline(always)]
+    pub fn reflect_light(
+        &self,
+        normal: LaneVector<L>,
+        wo: LaneVector<L>,
+        wi: LaneVector<L>,
+    ) -> [LaneColor<L::Floats>; 2] {
+        let black = LaneColor::splat(Rgb::BLACK);
+        let cosine = normal.dot(wi);
+        let facing = L::all().without(cosine.le(L::splat(0.0)));
+        let shiny = facing.without(self.specular.is_black());
+        let specular = if shiny.is_empty() {
+            black
+        } else {
+            let mirrored = normal * (L::splat(2.0) * normal.dot(wo)) - wo;
+            (self.specular * highlight::<L>(mirrored.dot(wi), self.shininess, shiny)).or_where_not(shiny, black)
+        };
+        [(self.diffuse * cosine.to_floats()).or_where_not(facing, black), specular]
+    }
+}
+
+/// The cosine to the power of the exponent, clipped at 0, in the lanes that are asked for.
+#[inline(always)]
+fn highlight<L: Lanes>(cosine: L, shininess: f32, asked: Bits) -> L::Floats {
+    let exponent = L::splat(f64::from(shininess));
+    // Beyond this the result is no f32 but zero; the logarithm is by far the dearest part of a small scene's shading.
+    let vanishing = (exponent * (L::splat(1.0) - cosine)).gt(L::splat(104.0));
+    let visible = asked.without(cosine.le(L::splat(0.0)) | vanishing);
+    let mut powers = [0.0; WIDTH];
+    if visible.any() {
+        let mut cosines = [0.0; WIDTH];
+        cosine.store(&mut cosines, 0);
+        for lane in visible.lanes() {
+            powers[lane] = portable::pow(cosines[lane].min(1.0), f64::from(shininess)) as f32;
+        }
+    }
+    Floats::load(&powers, 0)
 }
 
 /// A material, ready to be evaluated.
@@ -264,7 +361,7 @@ mod tests {
             for step in 0..=1000 {
                 let cosine = f64::from(step) / 1000.0;
                 let exact = portable::pow(cosine, f64::from(shininess)) as f32;
-                let quick = highlight(cosine, shininess);
+                let quick = highlight::<f64>(cosine, shininess, Bits::first(1));
                 assert!(quick == exact || cosine == 0.0, "{cosine}^{shininess}: {quick} and {exact}");
             }
         }

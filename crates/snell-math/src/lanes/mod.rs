@@ -67,8 +67,9 @@ pub trait Lanes:
     /// As many `f32`.
     type Floats: Floats;
 
-    /// Runs a stretch of work, compiled for these instructions. What it calls must be `#[inline(always)]` to be so as well.
-    fn stage<R>(work: impl FnOnce() -> R) -> R;
+    /// Does a stretch of work, compiled for these instructions. What it calls must be `#[inline(always)]` to be so as well, which a
+    /// closure cannot be.
+    fn stage<W: Work>(work: W) -> W::Output;
 
     /// The same number in all lanes.
     fn splat(value: f64) -> Self;
@@ -208,9 +209,9 @@ pub fn dispatch<W: Work>(set: InstructionSet, work: W) -> W::Output {
     match set {
         InstructionSet::Scalar => work.run::<f64>(),
         #[cfg(target_arch = "x86_64")]
-        InstructionSet::Avx512 if x86::has_avx512() => x86::Eight512::stage(|| work.run::<x86::Eight512>()),
+        InstructionSet::Avx512 if x86::has_avx512() => x86::Eight512::stage(work),
         #[cfg(target_arch = "x86_64")]
-        InstructionSet::Avx2 if x86::has_avx2() => x86::Eight256::stage(|| work.run::<x86::Eight256>()),
+        InstructionSet::Avx2 if x86::has_avx2() => x86::Eight256::stage(work),
         _ => work.run::<portable::Eight>(),
     }
 }

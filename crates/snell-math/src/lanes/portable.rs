@@ -3,15 +3,15 @@
 use std::array::from_fn;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::{Bits, Floats, Lanes, WIDTH};
+use super::{Bits, Floats, Lanes, WIDTH, Work};
 
 impl Lanes for f64 {
     const COUNT: usize = 1;
     type Floats = f32;
 
     #[inline(always)]
-    fn stage<R>(work: impl FnOnce() -> R) -> R {
-        work()
+    fn stage<W: Work>(work: W) -> W::Output {
+        work.run::<Self>()
     }
     #[inline(always)]
     fn splat(value: f64) -> Self {
@@ -142,8 +142,8 @@ impl Lanes for Eight {
     type Floats = EightFloats;
 
     #[inline(always)]
-    fn stage<R>(work: impl FnOnce() -> R) -> R {
-        work()
+    fn stage<W: Work>(work: W) -> W::Output {
+        work.run::<Self>()
     }
     #[inline(always)]
     fn splat(value: f64) -> Self {

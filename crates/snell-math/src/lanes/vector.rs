@@ -63,12 +63,38 @@ impl<L: Lanes> LaneVector<L> {
         scaled.or_where_not(length_squared.gt(L::splat(0.0)), self)
     }
 
+    /// As [`Vector3::try_normalize`], with +y for what has no direction.
+    #[inline(always)]
+    #[must_use]
+    pub fn try_normalize_or_y(self) -> Self {
+        let length_squared = self.length_squared();
+        let scaled = self * (L::splat(1.0) / length_squared.sqrt());
+        let usual = L::splat(1e-190).le(length_squared) & length_squared.lt(L::splat(1e190));
+        let unusual = L::all().without(usual);
+        if unusual.is_empty() { scaled } else { self.normalize_unusual(unusual, scaled) }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn normalize_unusual(self, unusual: Bits, scaled: Self) -> Self {
+        let (mut all, mut done) = ([[0.0; WIDTH]; 3], [[0.0; WIDTH]; 3]);
+        self.store(&mut all, 0);
+        scaled.store(&mut done, 0);
+        for lane in unusual.lanes() {
+            let vector = Vector3::new(all[0][lane], all[1][lane], all[2][lane]);
+            let unit = vector.try_normalize().unwrap_or(Vector3::Y);
+            (0..3).for_each(|axis| done[axis][lane] = unit[axis]);
+        }
+        Self::load(&done, 0)
+    }
+
     /// As [`Vector3::max_abs`].
     #[inline(always)]
     #[must_use]
     pub fn max_abs(self) -> L {
-        let larger = |a: L, b: L| a.or_where_not(a.gt(b), b);
-        larger(larger(self.x.abs(), self.y.abs()), self.z.abs())
+        let (x, y, z) = (self.x.abs(), self.y.abs(), self.z.abs());
+        let across = x.or_where_not(x.gt(y), y);
+        across.or_where_not(across.gt(z), z)
     }
 
     /// `self` where a bit is set, `other` elsewhere.

@@ -8,7 +8,7 @@ use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::OnceLock;
 
-use super::{Bits, Floats, Lanes, WIDTH};
+use super::{Bits, Floats, Lanes, WIDTH, Work};
 
 /// Whether the machine has what [`Eight256`] needs.
 #[inline]
@@ -113,10 +113,10 @@ impl Lanes for Eight512 {
     type Floats = Floats512;
 
     #[inline(always)]
-    fn stage<R>(work: impl FnOnce() -> R) -> R {
+    fn stage<W: Work>(work: W) -> W::Output {
         #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,bmi1,bmi2,lzcnt,popcnt")]
-        fn with_instructions<R>(work: impl FnOnce() -> R) -> R {
-            work()
+        fn with_instructions<W: Work>(work: W) -> W::Output {
+            work.run::<Eight512>()
         }
         // SAFETY: the instructions are there, see the top of the file; every machine with AVX2 counts bits.
         unsafe { with_instructions(work) }
@@ -191,10 +191,10 @@ impl Lanes for Eight256 {
     type Floats = Floats256;
 
     #[inline(always)]
-    fn stage<R>(work: impl FnOnce() -> R) -> R {
+    fn stage<W: Work>(work: W) -> W::Output {
         #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
-        fn with_instructions<R>(work: impl FnOnce() -> R) -> R {
-            work()
+        fn with_instructions<W: Work>(work: W) -> W::Output {
+            work.run::<Eight256>()
         }
         // SAFETY: the instructions are there, see the top of the file; every machine with AVX2 counts bits.
         unsafe { with_instructions(work) }
@@ -235,8 +235,10 @@ impl Lanes for Eight256 {
         // SAFETY: as above.
         unsafe {
             let minus = _mm256_set1_pd(-0.0);
-            let half = |magnitude, sign| _mm256_or_pd(_mm256_andnot_pd(minus, magnitude), _mm256_and_pd(minus, sign));
-            Self(half(self.0, sign.0), half(self.1, sign.1))
+            Self(
+                _mm256_or_pd(_mm256_andnot_pd(minus, self.0), _mm256_and_pd(minus, sign.0)),
+                _mm256_or_pd(_mm256_andnot_pd(minus, self.1), _mm256_and_pd(minus, sign.1)),
+            )
         }
     }
     #[inline(always)]
@@ -259,9 +261,12 @@ impl Lanes for Eight256 {
         // SAFETY: as above.
         unsafe {
             let all = _mm256_set1_epi64x(i64::from(bits.0));
-            let mask = |lanes| _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(all, lanes), lanes));
-            let (low, high) = (mask(_mm256_setr_epi64x(1, 2, 4, 8)), mask(_mm256_setr_epi64x(16, 32, 64, 128)));
-            Self(_mm256_blendv_pd(other.0, self.0, low), _mm256_blendv_pd(other.1, self.1, high))
+            let (low, high) = (_mm256_setr_epi64x(1, 2, 4, 8), _mm256_setr_epi64x(16, 32, 64, 128));
+            let (low_mask, high_mask) = (
+                _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(all, low), low)),
+                _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(all, high), high)),
+            );
+            Self(_mm256_blendv_pd(other.0, self.0, low_mask), _mm256_blendv_pd(other.1, self.1, high_mask))
         }
     }
     #[inline(always)]

@@ -24,26 +24,61 @@ impl Geometry {
     /// list is not complete, where an opaque one is in the way.
     pub fn gather_blockers(&self, ray: &Ray, distance: f64, hits: &mut Vec<Hit>, scratch: &mut QueryScratch) -> bool {
         self.world.any(ray, distance, |index, primitive| {
-            if let Primitive::Instance { prototype, placement, material } = primitive {
-                let space = &self.prototypes[*prototype as usize];
-                let ray = self.world.placements[*placement as usize].to_local(ray);
-                return space.any(&ray, distance, |inner, primitive| {
-                    let keep = |LocalHit { t, place }| hits.push(Hit { t, primitive: index, inner, place });
-                    let attributes = &space.attributes[inner as usize];
-                    if attributes.is_opaque {
-                        self.is_met(space, primitive, &ray, distance, scratch)
-                    } else {
-                        self.blocks(space, attributes, primitive, *material, &ray, distance, scratch, keep)
-                    }
-                });
-            }
-            let attributes = &self.world.attributes[index as usize];
-            if attributes.is_opaque {
-                return self.is_met(&self.world, primitive, ray, distance, scratch);
-            }
-            let keep = |LocalHit { t, place }| hits.push(Hit { t, primitive: index, inner: NONE, place });
-            self.blocks(&self.world, attributes, primitive, NONE, ray, distance, scratch, keep)
+            self.is_blocked_by(index, primitive, ray, distance, false, |hit| hits.push(hit), scratch)
         })
+    }
+
+    /// As [`Geometry::gather_blockers`], of the primitives in the world's hierarchy alone; the hits with the number of a lane.
+    #[inline(never)]
+    pub(super) fn is_blocked_by_bounded(
+        &self,
+        ray: &Ray,
+        distance: f64,
+        any_blocks: bool,
+        lane: usize,
+        hits: &mut Vec<(u8, Hit)>,
+        scratch: &mut QueryScratch,
+    ) -> bool {
+        self.world.bvh.any(ray, distance, |index| {
+            let keep = |hit| hits.push((lane as u8, hit));
+            let primitive = &self.world.primitives[index as usize];
+            self.is_blocked_by(index, primitive, ray, distance, any_blocks, keep, scratch)
+        })
+    }
+
+    /// Whether one primitive of the world blocks all light of a ray; gives its transparent surfaces on the way to `keep`, where
+    /// not everything blocks.
+    #[expect(clippy::too_many_arguments, reason = "a private step of the functions above")]
+    #[inline(always)]
+    pub(super) fn is_blocked_by(
+        &self,
+        index: u32,
+        primitive: &Primitive,
+        ray: &Ray,
+        distance: f64,
+        any_blocks: bool,
+        mut keep: impl FnMut(Hit),
+        scratch: &mut QueryScratch,
+    ) -> bool {
+        if let Primitive::Instance { prototype, placement, material } = primitive {
+            let space = &self.prototypes[*prototype as usize];
+            let ray = self.world.placements[*placement as usize].to_local(ray);
+            return space.any(&ray, distance, |inner, primitive| {
+                let keep = |LocalHit { t, place }| keep(Hit { t, primitive: index, inner, place });
+                let attributes = &space.attributes[inner as usize];
+                if any_blocks || attributes.is_opaque {
+                    self.is_met(space, primitive, &ray, distance, scratch)
+                } else {
+                    self.blocks(space, attributes, primitive, *material, &ray, distance, scratch, keep)
+                }
+            });
+        }
+        let attributes = &self.world.attributes[index as usize];
+        if any_blocks || attributes.is_opaque {
+            return self.is_met(&self.world, primitive, ray, distance, scratch);
+        }
+        let keep = |LocalHit { t, place }| keep(Hit { t, primitive: index, inner: NONE, place });
+        self.blocks(&self.world, attributes, primitive, NONE, ray, distance, scratch, keep)
     }
 
     /// Whether a ray, given in the primitive's space, meets one primitive that is no instance with 0 < t < `distance`.

@@ -5,14 +5,17 @@
 //! compiled, so most rays are never transformed.
 
 mod blockers;
+mod lanes;
 mod placed;
 mod space;
 mod surfaces;
 #[cfg(test)]
 mod tests;
 
-use snell_math::{Point3, Ray, Vector3};
+use snell_math::{Point3, Ray, Rgb, Vector3};
 
+pub(crate) use lanes::Blockers;
+pub use lanes::HitRows;
 pub(crate) use placed::Placement;
 pub(crate) use space::{Attributes, NONE, ObjectPlace, ObjectSpace, Primitive, Space};
 pub use surfaces::{Form, WorldSurface};
@@ -22,7 +25,6 @@ use crate::csg::{CsgHit, CsgScratch, CsgSolid};
 use crate::interaction::{SolidId, SurfaceInteraction};
 use crate::shape::triangle_mesh::{MeshHit, TriangleMesh};
 use crate::shape::{ShapeHit, SurfacePoint};
-use crate::task::RayTask;
 use crate::texture::Spaces;
 
 /// All geometry of a compiled scene; never written to after it was built.
@@ -160,32 +162,39 @@ pub struct QueryScratch {
 }
 
 impl Geometry {
-    /// The nearest hit of every ray of a queue, in its order. How a queue is answered is this room's own business.
-    pub fn intersect_queue(&self, tasks: &[RayTask], hits: &mut Vec<Option<Hit>>, scratch: &mut QueryScratch) {
-        hits.clear();
-        hits.extend(tasks.iter().map(|task| self.intersect(&task.ray, f64::INFINITY, scratch)));
-    }
-
     /// The nearest hit with 0 < t ≤ `t_max`. Of several at the same distance, the one of the lowest primitive; but an opaque
     /// one before any transparent one that touches it.
     #[inline]
     pub fn intersect(&self, ray: &Ray, t_max: f64, scratch: &mut QueryScratch) -> Option<Hit> {
         let touching = Touching::along(ray);
         let found = self.world.nearest(ray, touching, t_max, |primitive, is_opaque, t_max| {
-            if let Primitive::Instance { prototype, placement, .. } = primitive {
-                return self.intersect_instance(*prototype, *placement, ray, touching, t_max, scratch);
-            }
-            // Those at `t_max` count.
-            let local = self.intersect_primitive(&self.world, primitive, ray, 0.0, t_max.next_up(), scratch)?;
-            Some(touching.candidate(local, is_opaque))
+            self.meet_in_world(primitive, is_opaque, ray, touching, t_max, scratch)
         });
         found.map(|(primitive, InnerHit { inner, local, .. })| Hit { t: local.t, primitive, inner, place: local.place })
     }
 
+    /// The nearest hit with one primitive of the world, those at `t_max` included.
+    #[inline]
+    fn meet_in_world(
+        &self,
+        primitive: &Primitive,
+        is_opaque: bool,
+        ray: &Ray,
+        touching: Touching,
+        t_max: f64,
+        scratch: &mut QueryScratch,
+    ) -> Option<InnerHit> {
+        if let Primitive::Instance { prototype, placement, .. } = primitive {
+            return self.intersect_instance(*prototype, *placement, ray, touching, t_max, scratch);
+        }
+        let local = self.intersect_primitive(&self.world, primitive, ray, 0.0, t_max.next_up(), scratch)?;
+        Some(touching.candidate(local, is_opaque))
+    }
+
     /// True where a hit is where its ray begins, but for rounding: with a surface that touches the one the ray was spawned at.
     #[inline]
-    pub fn is_at_origin(ray: &Ray, hit: &Hit) -> bool {
-        hit.t <= Touching::along(ray).0
+    pub fn is_at_origin(ray: &Ray, t: f64) -> bool {
+        t <= Touching::along(ray).0
     }
 
     /// The nearest hit of a world ray with an instance.
@@ -318,6 +327,23 @@ impl Geometry {
             Primitive::Instance { .. } => unreachable!("an instance is no surface"),
         };
         let material = self.material_of(primitive, attributes, inherited_material, hit.place);
+        self.complete(space, hit, index, placement, surface, vertex_color, material)
+    }
+
+    /// The interaction at a surface that is known, given in the primitive's own space.
+    #[expect(clippy::too_many_arguments, reason = "the last step of the function above, which others take as well")]
+    #[inline(always)]
+    fn complete(
+        &self,
+        space: &Space,
+        hit: &Hit,
+        index: u32,
+        placement: Option<&Placement>,
+        surface: SurfacePoint,
+        vertex_color: Option<Rgb>,
+        material: u32,
+    ) -> SurfaceInteraction {
+        let (primitive, attributes) = (&space.primitives[index as usize], &space.attributes[index as usize]);
         let Spaces { object, uv, .. } = self.spaces[material as usize];
         let place = if object || uv {
             space.locate_on_object(primitive, attributes, uv.then_some(hit.place.part), &surface)

@@ -235,11 +235,22 @@ impl Space {
         if self.first_alone == 0 {
             return nearest;
         }
-        let bounded = self.bvh.closest(ray, limit, |index, limit| {
+        self.nearest_bounded(ray, touching, limit, test).or(nearest)
+    }
+
+    /// As [`Space::nearest`], of the primitives in the hierarchy alone; hits at `limit` count.
+    #[inline]
+    pub(super) fn nearest_bounded(
+        &self,
+        ray: &Ray,
+        touching: Touching,
+        limit: f64,
+        mut test: impl FnMut(&Primitive, bool, f64) -> Option<InnerHit>,
+    ) -> Option<(u32, InnerHit)> {
+        self.bvh.closest(ray, limit, |index, limit| {
             let is_opaque = || self.attributes[index as usize].is_opaque;
             meet(&self.primitives[index as usize], is_opaque, ray, touching, limit, &mut test)
-        });
-        bounded.or(nearest)
+        })
     }
 
     /// Visits every primitive whose box a ray passes before `t_max`, in no particular order, until `visit` says it is enough.

@@ -71,6 +71,12 @@ impl Dispersion {
         Self { bodies: scene.materials.iter().map(indices).collect(), weights, splits, pixel_angle }
     }
 
+    /// True where no body disperses, and nothing splits.
+    #[inline]
+    pub fn is_idle(&self) -> bool {
+        self.splits.is_empty()
+    }
+
     /// The bands, with their shares of white, that a ray of all light splits into at the boundary between two bodies, for
     /// a sample with that number of a place to split; `None` where it stays together.
     pub fn split(

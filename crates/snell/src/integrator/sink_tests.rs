@@ -1,12 +1,15 @@
 //! Which rays are followed, and what becomes of those that are not.
 
+use std::array::from_fn;
+
+use snell_math::lanes::{Bits, LaneColor};
 use snell_math::{Point3, Ray, Rgb, Vector3};
 use snell_scene::scene::Shadows;
 
-use super::{Rules, Sink, Spawn};
+use super::{QUEUES, Rules, ShadedRays, Sink, Spawn};
 use crate::observe::RayTree;
 use crate::statistics::Statistics;
-use crate::task::{Cut, MediumStack, MediumStacks, RayKind, RayTask, Term};
+use crate::task::{Cut, MediumStack, MediumStacks, QuestionQueue, RayKind, RayQueue, RayTask, Term};
 
 const RULES: Rules = Rules { depth: 3, min_weight: 0.01, weightless_rays: false, shadows: Shadows::Filtered };
 
@@ -30,14 +33,18 @@ fn task(depth: u16, throughput: f32) -> RayTask {
 fn with(
     rules: Rules,
     parent: &RayTask,
-    call: impl FnOnce(&mut Sink<'_, RayTree>),
+    call: impl FnOnce(&mut Sink<'_, RayTree>, &ShadedRays<'_>),
 ) -> (Vec<RayTask>, RayTree, Statistics, Rgb) {
-    let (mut sums, mut questions, mut next) = ([Rgb::BLACK], Vec::new(), Vec::new());
+    let (mut sums, mut questions) = ([Rgb::BLACK], QuestionQueue::default());
+    let mut next: [RayQueue; QUEUES] = from_fn(|_| RayQueue::default());
+    let mut parents = RayQueue::default();
+    parents.push(parent);
+    let rows = *parents.rows().next().expect("one ray").0;
     let (mut media, mut statistics, mut next_id) = (MediumStacks::default(), Statistics::default(), 1);
     let (mut tree, mut spawned) = (RayTree::default(), [0]);
     crate::observe::Observer::ray(&mut tree, parent);
     statistics.camera_rays = 1;
-    call(&mut Sink {
+    let mut sink = Sink {
         sums: &mut sums,
         questions: &mut questions,
         next: &mut next,
@@ -47,22 +54,28 @@ fn with(
         observer: &mut tree,
         rules,
         next_id: &mut next_id,
-    });
-    (next, tree, statistics, sums[0])
+    };
+    call(&mut sink, &ShadedRays { rows: &rows, at: 0, throughput: &rows.throughput });
+    let tasks =
+        next.iter().flat_map(|queue| queue.rows().flat_map(|(rows, lanes)| lanes.lanes().map(|l| rows.task(l))));
+    (tasks.collect(), tree, statistics, sums[0])
 }
 
-fn spawn(weight: f32) -> Spawn {
-    Spawn { kind: RayKind::Reflected, weight: Rgb::gray(weight), media: MediumStack::default(), band: None }
-}
-
-fn upward() -> Ray {
-    Ray::new(Point3::ORIGIN, Vector3::Y)
+/// Spawns an upward ray with a weight.
+fn spawn(sink: &mut Sink<'_, RayTree>, parents: &ShadedRays<'_>, weight: f32) {
+    let weight = LaneColor::<f32>::splat(Rgb::gray(weight));
+    let (followed, throughput) = sink.follow::<f64>(parents, Bits::lane(0), weight);
+    if followed.any() {
+        let (origin, direction) = (Point3::ORIGIN.into(), Vector3::Y.into());
+        let kind = RayKind::Reflected;
+        sink.spawn(parents, followed, &Spawn { kind, origin, direction, throughput, media: None, band: None });
+    }
 }
 
 #[test]
 fn rays_are_spawned_one_deeper_with_their_share() {
     let parent = task(2, 0.5);
-    let (next, tree, statistics, _) = with(RULES, &parent, |sink| sink.spawn(&parent, spawn(0.25), upward));
+    let (next, tree, statistics, _) = with(RULES, &parent, |sink, parents| spawn(sink, parents, 0.25));
     assert_eq!((next.len(), next[0].depth, next[0].throughput), (1, 3, Rgb::gray(0.125)));
     assert_eq!((next[0].id, next[0].parent, tree.rays.len()), (1, 0, 2));
     assert_eq!((statistics.reflected_rays, statistics.max_depth, statistics.cut_weight()), (1, 3, 0.0));
@@ -72,13 +85,13 @@ fn rays_are_spawned_one_deeper_with_their_share() {
 fn rays_too_deep_or_too_light_are_cut_and_their_weight_is_known() {
     for (depth, weight, why) in [(3, 0.5, Cut::Depth), (1, 0.009, Cut::Weight), (3, 0.009, Cut::Depth)] {
         let parent = task(depth, 1.0);
-        let (next, tree, statistics, _) = with(RULES, &parent, |sink| sink.spawn(&parent, spawn(weight), upward));
+        let (next, tree, statistics, _) = with(RULES, &parent, |sink, parents| spawn(sink, parents, weight));
         assert!(next.is_empty() && statistics.reflected_rays == 0);
         assert_eq!(tree.rays[0].cuts, [(why, Rgb::gray(weight))]);
         assert!((statistics.cut_weight() - f64::from(weight)).abs() < 1e-9);
     }
     let all = Rules { min_weight: 0.0, ..RULES };
-    let (next, ..) = with(all, &task(1, 1.0), |sink| sink.spawn(&task(1, 1.0), spawn(1e-30), upward));
+    let (next, ..) = with(all, &task(1, 1.0), |sink, parents| spawn(sink, parents, 1e-30));
     assert_eq!(next.len(), 1, "none is too light");
 }
 
@@ -87,7 +100,7 @@ fn rays_of_no_weight_are_spawned_by_rule_only() {
     let parent = task(1, 1.0);
     for (rule, count) in [(false, 0), (true, 1)] {
         let rules = Rules { weightless_rays: rule, min_weight: 0.0, ..RULES };
-        let (next, tree, statistics, _) = with(rules, &parent, |sink| sink.spawn(&parent, spawn(0.0), upward));
+        let (next, tree, statistics, _) = with(rules, &parent, |sink, parents| spawn(sink, parents, 0.0));
         assert_eq!((next.len(), statistics.reflected_rays), (count, count as u64));
         assert!(tree.rays[0].cuts.is_empty());
     }
@@ -99,7 +112,7 @@ fn a_ray_that_passes_stays_what_it_was_but_not_for_ever() {
     let beyond = Ray::new(Point3::new(1.0, 0.0, 0.0), Vector3::X);
     let mut passes = 0;
     loop {
-        let (next, tree, statistics, _) = with(RULES, &ray, |sink| sink.pass(&ray, beyond, MediumStack::default()));
+        let (next, tree, statistics, _) = with(RULES, &ray, |sink, _| sink.pass(&ray, beyond, MediumStack::default()));
         assert_eq!((statistics.refracted_rays, statistics.reflected_rays), (0, 0), "it is no new ray");
         let Some(&again) = next.first() else {
             assert_eq!(tree.rays[0].cuts, [(Cut::Depth, ray.throughput)]);
@@ -115,9 +128,10 @@ fn a_ray_that_passes_stays_what_it_was_but_not_for_ever() {
 #[test]
 fn terms_carry_the_throughput_to_the_sample() {
     let parent = task(1, 0.5);
-    let (_, tree, _, sum) = with(RULES, &parent, |sink| {
-        sink.add(&parent, Term::Emission, Rgb::gray(0.5));
-        sink.add(&parent, Term::Ambient, Rgb::new(1.0, 0.0, 0.0));
+    let (_, tree, _, sum) = with(RULES, &parent, |sink, parents| {
+        let (half, red) = (Rgb::gray(0.5), Rgb::new(1.0, 0.0, 0.0));
+        sink.add::<f64>(parents, Bits::lane(0), Term::Emission, LaneColor::splat(half));
+        sink.add::<f64>(parents, Bits::lane(0), Term::Ambient, LaneColor::splat(red));
     });
     assert_eq!(sum, Rgb::new(0.75, 0.25, 0.25));
     assert_eq!((tree.sum(), tree.shares.len()), (sum, 2));
@@ -128,9 +142,9 @@ fn terms_carry_the_throughput_to_the_sample() {
 #[test]
 fn rays_of_one_sample_do_not_multiply_without_end() {
     let parent = task(1, 1.0);
-    let (next, _, statistics, _) = with(RULES, &parent, |sink| {
+    let (next, _, statistics, _) = with(RULES, &parent, |sink, parents| {
         for _ in 0..5000 {
-            sink.spawn(&parent, spawn(1.0), upward);
+            spawn(sink, parents, 1.0);
         }
     });
     assert_eq!((next.len(), statistics.reflected_rays), (2048, 2048));

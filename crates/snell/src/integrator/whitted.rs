@@ -2,22 +2,24 @@
 //!
 //! Whitted, "An Improved Illumination Model for Shaded Display", CACM 23(6), 1980; `shade` follows the order of the lecture:
 //! the ambient term, then each light, then reflection, then refraction. World space; `wo` leads to the viewer, `wi` to a
-//! light, both leaving the surface.
+//! light, both leaving the surface. Everything is written for rays side by side, see [`snell_math::lanes`]; lanes count from the
+//! place of the first.
 
-use snell_math::{Normal3, Rgb, Vector3};
+use snell_math::lanes::{Bits, Floats, LaneColor, LaneVector, Lanes, WIDTH};
+use snell_math::{Ray, Rgb, Vector3};
 use snell_scene::scene::Medium;
 
 use super::dispersion::Dispersion;
-use super::{Integrator, Sink, Spawn, scattering};
+use super::{Integrator, LaneQuestions, ShadedRays, Sink, Spawn, scattering};
 use crate::camera::{Camera, Projection, Window};
 use crate::compile::CompiledScene;
-use crate::geometry::{Geometry, Hit};
-use crate::interaction::SurfaceInteraction;
+use crate::geometry::{Geometry, HitRows};
+use crate::interaction::{LaneSurface, SurfaceRows};
 use crate::light::Light;
-use crate::material::{Bsdf, Interface};
+use crate::material::{LaneBsdf, Material};
 use crate::observe::Observer;
-use crate::optics::{beer_lambert, fresnel_dielectric, reflect, refract};
-use crate::task::{Band, Crossing, Inside, RayKind, RayTask, ShadowQuestion, Term};
+use crate::optics::{beer_lambert, fresnel_dielectric_lanes, reflect_lanes, refract_lanes};
+use crate::task::{Band, Crossing, Inside, MediumStack, RayKind, RayRows, RayTask, Term, column, set_column};
 use crate::texture::ViewProjection;
 
 /// Recursive ray tracing over lights without extent.
@@ -52,267 +54,426 @@ impl Whitted {
     }
 }
 
+/// What most functions of this file are given: rays that met surfaces of one material, and where results go.
+struct Shading<'a, 'b, 's, L, O> {
+    scene: &'a CompiledScene,
+    rays: ShadedRays<'a>,
+    surface: LaneSurface<L>,
+    /// To the viewers.
+    wo: LaneVector<L>,
+    out: &'b mut Sink<'s, O>,
+}
+
+/// A boundary of transparent bodies as rays meet it.
+struct Boundary<'a, L: Lanes> {
+    crossings: &'a [Crossing; WIDTH],
+    /// On the side of `wo`.
+    normal: LaneVector<L>,
+    /// The shares follow Fresnel's equations, scaled by the coefficients; or else are the coefficients.
+    fresnel: bool,
+    /// The reflected ray's coefficient.
+    reflect: LaneColor<L::Floats>,
+    /// The refracted ray's coefficient.
+    transmit: LaneColor<L::Floats>,
+}
+
 impl Integrator for Whitted {
-    fn shade<O: Observer>(&self, scene: &CompiledScene, task: &RayTask, hit: Option<&Hit>, out: &mut Sink<'_, O>) {
-        // What the body that the ray travels in does to it on the way.
-        match medium_around(scene, task, out) {
-            None => self.shade_end(scene, task, hit, out),
-            Some(medium) => {
-                let distance = hit.map_or(f64::INFINITY, |hit| hit.t);
-                let weakened = travel(scene, task, medium, distance, out);
-                self.shade_end(scene, &weakened, hit, out);
+    #[inline(always)]
+    fn shade<L: Lanes, O: Observer>(
+        &self,
+        scene: &CompiledScene,
+        rays: &RayRows,
+        at: usize,
+        active: Bits,
+        hits: &HitRows,
+        surfaces: &mut SurfaceRows,
+        out: &mut Sink<'_, O>,
+    ) {
+        let met = Bits(hits.met().0 >> at) & active;
+        // What the bodies that the rays travel in do to them on the way.
+        let weakened;
+        let throughput = if active.lanes().all(|lane| rays.media[at + lane] == MediumStack::EMPTY) {
+            &rays.throughput
+        } else {
+            weakened = travel(scene, rays, at, active, met, hits, out);
+            &weakened
+        };
+        let rays = ShadedRays { rows: rays, at, throughput };
+        let missed = active.without(met);
+        if missed.any() {
+            self.shade_missed::<L, O>(scene, &rays, missed, out);
+        }
+        if met.is_empty() {
+            return;
+        }
+        scene.geometry.surfaces::<L>(rays.rows, at, hits, met, surfaces);
+        if out.is_watched() {
+            for lane in met.lanes() {
+                let interaction = scene.geometry.interaction_of(hits, surfaces, at + lane);
+                out.met(&rays.task(lane), Some(&interaction));
             }
+        }
+        let mut rest = met;
+        while rest.any() {
+            let material = surfaces.material[at + rest.lowest()];
+            let mut same = Bits::NONE;
+            for lane in rest.lanes() {
+                same |= Bits(u8::from(surfaces.material[at + lane] == material) << lane);
+            }
+            rest = rest.without(same);
+            self.shade_material::<L, O>(scene, material, &rays, same, hits, surfaces, out);
         }
     }
 }
 
-// Code that runs for nearly every ray stands in functions of its own here and there, that are not inlined: what the compiler
-// makes of one large function keeps less in registers than it moves to and fro.
 impl Whitted {
-    /// What is at the end of a ray, whose throughput is what is left there.
-    #[inline(never)]
-    fn shade_end<O: Observer>(&self, scene: &CompiledScene, task: &RayTask, hit: Option<&Hit>, out: &mut Sink<'_, O>) {
-        let Some(hit) = hit else {
-            out.met(task, None);
-            out.add(task, Term::Background, self.background(scene, task));
-            return;
-        };
-        let interaction = scene.interaction(&task.ray, hit);
-        out.met(task, Some(&interaction));
-        let material = &scene.materials[interaction.material as usize];
-        let evaluated;
-        let bsdf = match material.constant_bsdf() {
-            Some(constant) if interaction.vertex_color.is_none() => constant,
-            _ => {
-                evaluated = material.bsdf(&scene.textures, &interaction);
-                &evaluated
+    /// Rays that leave the scene.
+    #[inline(always)]
+    fn shade_missed<L: Lanes, O: Observer>(
+        &self,
+        scene: &CompiledScene,
+        rays: &ShadedRays<'_>,
+        missed: Bits,
+        out: &mut Sink<'_, O>,
+    ) {
+        if out.is_watched() {
+            missed.lanes().for_each(|lane| out.met(&rays.task(lane), None));
+        }
+        let color = match scene.background.constant() {
+            Some(color) => LaneColor::splat(color),
+            None => {
+                let mut rows = [[0.0; WIDTH]; 3];
+                for lane in missed.lanes() {
+                    set_column(&mut rows, lane, self.background(scene, &rays.task(lane)).to_array());
+                }
+                LaneColor::load(&rows, 0)
             }
         };
+        out.add::<L>(rays, missed, Term::Background, color);
+    }
 
-        let leaving = interaction.is_outward(task.ray.direction);
-        let crossing = material.body.as_ref().map(|body| {
-            let inside = Inside { solid: interaction.solid, material: interaction.material, priority: body.priority };
-            out.media.cross(task.media, inside, leaving, Geometry::is_at_origin(&task.ray, hit))
-        });
-        // A boundary that a body of higher priority covers is not there.
-        if let Some(crossing) = crossing
-            && crossing.is_without_effect()
-        {
-            out.pass(task, interaction.spawn_ray(task.ray.direction), crossing.after);
-            return;
+    /// Rays that met surfaces of one material.
+    #[expect(clippy::too_many_arguments, reason = "as `shade`, of which it is a part")]
+    #[inline(always)]
+    fn shade_material<L: Lanes, O: Observer>(
+        &self,
+        scene: &CompiledScene,
+        number: u32,
+        rays: &ShadedRays<'_>,
+        met: Bits,
+        hits: &HitRows,
+        surfaces: &SurfaceRows,
+        out: &mut Sink<'_, O>,
+    ) {
+        let material = &scene.materials[number as usize];
+        let bsdf = lobes::<L>(scene, material, rays.at, met, hits, surfaces);
+        let surface = LaneSurface::<L>::load(surfaces, rays.at);
+        let direction = rays.direction::<L>();
+
+        let mut lanes = met;
+        let mut crossings = [Crossing::default(); WIDTH];
+        if let Some(body) = &material.body {
+            let leaving = surface.is_outward(direction);
+            let origin = LaneVector::load(&rays.rows.origin, rays.at);
+            let at_origin = Geometry::are_at_origin(origin, L::load(&hits.t, rays.at));
+            for lane in met.lanes() {
+                let from = rays.at + lane;
+                let inside = Inside { solid: surfaces.solid[from], material: number, priority: body.priority };
+                let stack = rays.rows.media[from];
+                let crossing = out.media.cross(stack, inside, leaving.has(lane), at_origin.has(lane));
+                crossings[lane] = crossing;
+                // A boundary that a body of higher priority covers is not there.
+                if crossing.is_without_effect() {
+                    lanes = lanes.without(Bits::lane(lane));
+                    let direction = Vector3::from(column(&rays.rows.direction, from));
+                    let origin = LaneSurface::<f64>::load(surfaces, from).spawn_origin(direction.into());
+                    out.pass(&rays.task(lane), Ray::new(origin.into(), direction), crossing.after);
+                }
+            }
+            if lanes.is_empty() {
+                return;
+            }
         }
 
-        let wo = -task.ray.direction;
-        add_local_terms(scene, task, &interaction, bsdf, wo, out);
-        if !bsdf.mirror.is_black() {
-            spawn_reflected(task, &interaction, wo, bsdf.mirror, out);
+        let mut shading = Shading { scene, rays: *rays, surface, wo: -direction, out };
+        shading.add_local_terms(lanes, &bsdf);
+        let mirrored = lanes.without(bsdf.mirror.is_black());
+        if mirrored.any() {
+            shading.spawn_reflected(mirrored, bsdf.mirror);
         }
-        if let (Some(interface), Some(crossing)) = (bsdf.interface, crossing) {
-            self.spawn_at_interface(scene, task, &interaction, wo, interface, crossing, out);
+        if let Some(fresnel) = bsdf.fresnel {
+            let normal = shading.surface.consistent_normal(shading.wo);
+            let LaneBsdf { reflect, transmit, .. } = bsdf;
+            let boundary = Boundary { crossings: &crossings, normal, fresnel, reflect, transmit };
+            self.spawn_at_interface(lanes, &boundary, surfaces, &mut shading);
         }
     }
 
     /// Reflection and refraction at the boundary of a transparent body.
-    #[expect(clippy::too_many_arguments, reason = "the parts of one hit; a struct of them would have this one user")]
-    fn spawn_at_interface<O: Observer>(
+    #[inline(always)]
+    fn spawn_at_interface<L: Lanes, O: Observer>(
         &self,
-        scene: &CompiledScene,
-        task: &RayTask,
-        interaction: &SurfaceInteraction,
-        wo: Vector3,
-        interface: Interface,
-        crossing: Crossing,
-        out: &mut Sink<'_, O>,
+        lanes: Bits,
+        boundary: &Boundary<'_, L>,
+        surfaces: &SurfaceRows,
+        shading: &mut Shading<'_, '_, '_, L, O>,
     ) {
-        let boundary = Boundary { interaction, crossing, interface, wo, normal: consistent_normal(interaction, wo) };
-        let sides = [crossing.before, crossing.beyond];
-        let split = match task.band {
-            Some(_) => None,
-            None => self.dispersion.split(scene, sides, wo, boundary.normal, task.split),
-        };
-        let reflected = match split {
-            // Each band for itself: the reflected shares come together again, since reflection does not disperse.
-            Some(bands) => bands.fold(Rgb::BLACK, |sum, (band, weight)| {
-                sum + weight * self.refract_band(scene, task, &boundary, Some(band), weight, out)
-            }),
-            None => self.refract_band(scene, task, &boundary, task.band, Rgb::WHITE, out),
-        };
-        spawn_reflected(task, interaction, wo, reflected, out);
+        let mut split = Bits::NONE;
+        if !self.dispersion.is_idle() {
+            split = self.spawn_split(lanes, boundary, surfaces, shading);
+        }
+        let together = lanes.without(split);
+        if together.any() {
+            let white = LaneColor::splat(Rgb::WHITE);
+            let reflected = self.refract_band(together, boundary, None, white, shading);
+            shading.spawn_reflected(together, reflected);
+        }
     }
 
-    /// Spawns the refracted ray of a band, or of all light, with a weight; returns the coefficient of the reflected one.
-    fn refract_band<O: Observer>(
+    /// Those rays of white light that split into bands, one after the other; tells which they were.
+    #[inline(never)]
+    fn spawn_split<L: Lanes, O: Observer>(
         &self,
-        scene: &CompiledScene,
-        task: &RayTask,
-        boundary: &Boundary<'_>,
+        lanes: Bits,
+        boundary: &Boundary<'_, L>,
+        surfaces: &SurfaceRows,
+        shading: &mut Shading<'_, '_, '_, L, O>,
+    ) -> Bits {
+        let (mut wo, mut normal) = ([[0.0; WIDTH]; 3], [[0.0; WIDTH]; 3]);
+        shading.wo.store(&mut wo, 0);
+        boundary.normal.store(&mut normal, 0);
+        let (mut reflect, mut transmit) = ([[0.0; WIDTH]; 3], [[0.0; WIDTH]; 3]);
+        boundary.reflect.store(&mut reflect, 0);
+        boundary.transmit.store(&mut transmit, 0);
+        let (scene, rays) = (shading.scene, shading.rays);
+        let mut split = Bits::NONE;
+        for lane in lanes.lanes() {
+            let notes = &rays.rows.notes[rays.at + lane];
+            if notes.band.is_some() {
+                continue;
+            }
+            let crossing = boundary.crossings[lane];
+            let sides = [crossing.before, crossing.beyond];
+            let (wo, normal) = (LaneVector::<f64>::load(&wo, lane), LaneVector::<f64>::load(&normal, lane));
+            let Some(bands) = self.dispersion.split(scene, sides, wo.into(), normal.into(), notes.split) else {
+                continue;
+            };
+            split |= Bits::lane(lane);
+            let surface = LaneSurface::<f64>::load(surfaces, rays.at + lane);
+            let mut alone = Shading { scene, rays: rays.only(lane), surface, wo, out: &mut *shading.out };
+            let boundary = Boundary {
+                crossings: &[crossing; WIDTH],
+                normal,
+                fresnel: boundary.fresnel,
+                reflect: LaneColor::<f32>::load(&reflect, lane),
+                transmit: LaneColor::<f32>::load(&transmit, lane),
+            };
+            // Each band for itself: the reflected shares come together again, since reflection does not disperse.
+            let black = LaneColor::<f32>::splat(Rgb::BLACK);
+            let reflected = bands.fold(black, |sum, (band, weight)| {
+                let weight = LaneColor::splat(weight);
+                sum + weight * self.refract_band(Bits::lane(0), &boundary, Some(band), weight, &mut alone)
+            });
+            alone.spawn_reflected(Bits::lane(0), reflected);
+        }
+        split
+    }
+
+    /// Spawns the refracted rays, of one band of white light or of what their parents carry, with a weight; returns the
+    /// coefficients of the reflected ones.
+    #[inline(always)]
+    fn refract_band<L: Lanes, O: Observer>(
+        &self,
+        lanes: Bits,
+        boundary: &Boundary<'_, L>,
         band: Option<Band>,
-        weight: Rgb,
-        out: &mut Sink<'_, O>,
-    ) -> Rgb {
-        let Boundary { interaction, crossing, wo, normal, .. } = *boundary;
-        let eta_before = self.dispersion.index(scene, crossing.before, band);
-        let eta_beyond = self.dispersion.index(scene, crossing.beyond, band);
-        let direction = refract(wo, normal, eta_before / eta_beyond);
-        let (reflect_share, transmit_share) = boundary.shares(eta_before, eta_beyond, direction.is_some());
-        let Some(direction) = direction else {
-            out.total_internal_reflection(task);
+        weight: LaneColor<L::Floats>,
+        shading: &mut Shading<'_, '_, '_, L, O>,
+    ) -> LaneColor<L::Floats> {
+        let Shading { scene, rays, surface, wo, .. } = *shading;
+        let (mut before, mut beyond, mut after) = ([1.0; WIDTH], [1.0; WIDTH], [MediumStack::EMPTY; WIDTH]);
+        for lane in lanes.lanes() {
+            let crossing = &boundary.crossings[lane];
+            let band = rays.rows.notes[rays.at + lane].band.or(band);
+            before[lane] = self.dispersion.index(scene, crossing.before, band);
+            beyond[lane] = self.dispersion.index(scene, crossing.beyond, band);
+            after[lane] = crossing.after;
+        }
+        let (eta_before, eta_beyond) = (L::load(&before, 0), L::load(&beyond, 0));
+        let eta = eta_before / eta_beyond;
+        let (refracts, direction) = refract_lanes(wo, boundary.normal, eta);
+        let (reflect_share, transmit_share) = boundary.shares(wo, eta_before, eta_beyond, refracts);
+        let refracted = lanes & refracts;
+        shading.out.total_internal_reflection(&rays, lanes.without(refracts));
+        if refracted.is_empty() {
             return reflect_share;
-        };
-        let weight = weight * transmit_share;
-        out.spawn(task, Spawn { kind: RayKind::Refracted, weight, media: crossing.after, band }, || {
-            let geometric = interaction.geometric_normal.face_forward(wo);
+        }
+        let (followed, throughput) = shading.out.follow::<L>(&rays, refracted, weight * transmit_share);
+        if followed.any() {
+            let flat = surface.flat_normal(wo);
             // On a smooth mesh the shading normal may send it back to the side it came from; then the flat one decides.
-            interaction.spawn_ray(if geometric.dot(direction) < 0.0 {
-                direction
-            } else {
-                refract(wo, geometric, eta_before / eta_beyond).unwrap_or(-wo)
-            })
-        });
+            let through = flat.dot(direction).lt(L::splat(0.0));
+            let mut direction = direction;
+            if followed.without(through).any() {
+                let (refracts, by_flat) = refract_lanes(wo, flat, eta);
+                direction = direction.or_where_not(through, by_flat.or_where_not(refracts, -wo));
+            }
+            let (kind, origin, media) = (RayKind::Refracted, surface.spawn_origin(direction), Some(&after));
+            shading.out.spawn(&rays, followed, &Spawn { kind, origin, direction, throughput, media, band });
+        }
         reflect_share
     }
 }
 
-/// What the body that a ray travels in is filled with, where light does not pass it unchanged.
+/// What the bodies that rays travel in do to them on the way to what they meet: scatters over that stretch, and gives what
+/// absorption leaves of what they carry.
+#[inline(never)]
+fn travel<O: Observer>(
+    scene: &CompiledScene,
+    rays: &RayRows,
+    at: usize,
+    active: Bits,
+    met: Bits,
+    hits: &HitRows,
+    out: &mut Sink<'_, O>,
+) -> [[f32; WIDTH]; 3] {
+    let mut throughput = rays.throughput;
+    for lane in active.lanes() {
+        let Some(medium) = medium_around(scene, rays.media[at + lane], out) else { continue };
+        let distance = if met.has(lane) { hits.t[at + lane] } else { f64::INFINITY };
+        let task = rays.task(at + lane);
+        if !medium.scattering.is_black() {
+            scattering::gather(scene, &task, medium, distance, out);
+        }
+        let left = task.throughput * beer_lambert(medium.absorption + medium.scattering, distance);
+        set_column(&mut throughput, at + lane, left.to_array());
+    }
+    throughput
+}
+
+/// What the innermost of some bodies is filled with, where light does not pass it unchanged.
 #[inline]
-fn medium_around<'a, O>(scene: &'a CompiledScene, task: &RayTask, out: &Sink<'_, O>) -> Option<&'a Medium> {
-    let inside = out.media.current(task.media)?;
+fn medium_around<'a, O>(scene: &'a CompiledScene, media: MediumStack, out: &Sink<'_, O>) -> Option<&'a Medium> {
+    let inside = out.media.current(media)?;
     let body = scene.materials[inside.material as usize].body.as_ref()?;
     (!body.medium.is_clear()).then_some(&body.medium)
 }
 
-/// Scatters over the stretch up to the hit, and gives the ray with what absorption leaves of it.
-#[inline(never)]
-fn travel<O: Observer>(
+/// The lobes of one material where rays met it.
+#[inline(always)]
+fn lobes<L: Lanes>(
     scene: &CompiledScene,
-    task: &RayTask,
-    medium: &Medium,
-    distance: f64,
-    out: &mut Sink<'_, O>,
-) -> RayTask {
-    if !medium.scattering.is_black() {
-        scattering::gather(scene, task, medium, distance, out);
+    material: &Material,
+    at: usize,
+    met: Bits,
+    hits: &HitRows,
+    surfaces: &SurfaceRows,
+) -> LaneBsdf<L> {
+    let is_colored = |lane: usize| surfaces.whole[at + lane].is_some_and(|whole| whole.vertex_color.is_some());
+    match material.constant_bsdf() {
+        Some(constant) if !met.lanes().any(is_colored) => LaneBsdf::splat(constant),
+        _ => LaneBsdf::gather(met.lanes().map(|lane| {
+            let interaction = scene.geometry.interaction_of(hits, surfaces, at + lane);
+            (lane, material.bsdf(&scene.textures, &interaction))
+        })),
     }
-    let left = beer_lambert(medium.absorption + medium.scattering, distance);
-    RayTask { throughput: task.throughput * left, ..*task }
 }
 
-/// A boundary as one ray meets it.
-struct Boundary<'a> {
-    interaction: &'a SurfaceInteraction,
-    crossing: Crossing,
-    interface: Interface,
-    wo: Vector3,
-    /// On the side of `wo`.
-    normal: Normal3,
-}
-
-impl Boundary<'_> {
-    /// The coefficients of the reflected and the refracted ray.
+impl<L: Lanes> Boundary<'_, L> {
+    /// The coefficients of the reflected and the refracted rays.
     ///
     /// Under total internal reflection all that either would carry is reflected: the lecture's function has no transmitted
     /// ray there and says nothing of its share, but light does not vanish.
-    fn shares(&self, eta_before: f64, eta_beyond: f64, refracts: bool) -> (Rgb, Rgb) {
-        let Interface { fresnel, reflect, transmit } = self.interface;
-        match (fresnel, refracts) {
-            (true, true) => {
-                let reflectance = fresnel_dielectric(self.normal.dot(self.wo), eta_before, eta_beyond) as f32;
-                (reflect * reflectance, transmit * (1.0 - reflectance))
-            }
-            (true, false) => (reflect, Rgb::BLACK),
-            (false, true) => (reflect, transmit),
-            (false, false) => (reflect + transmit, Rgb::BLACK),
+    #[inline(always)]
+    fn shares(
+        &self,
+        wo: LaneVector<L>,
+        eta_before: L,
+        eta_beyond: L,
+        refracts: Bits,
+    ) -> (LaneColor<L::Floats>, LaneColor<L::Floats>) {
+        let Self { fresnel, reflect, transmit, .. } = *self;
+        let black = LaneColor::splat(Rgb::BLACK);
+        if fresnel {
+            let reflectance = fresnel_dielectric_lanes(self.normal.dot(wo), eta_before, eta_beyond).to_floats();
+            let transmittance = L::Floats::splat(1.0) - reflectance;
+            let reflected = (reflect * reflectance).or_where_not(refracts, reflect);
+            (reflected, (transmit * transmittance).or_where_not(refracts, black))
+        } else {
+            let reflected = reflect.or_where_not(refracts, reflect + transmit);
+            (reflected, transmit.or_where_not(refracts, black))
         }
     }
 }
 
-/// Emission, the ambient term, and a question to each light that may show.
-fn add_local_terms<O: Observer>(
-    scene: &CompiledScene,
-    task: &RayTask,
-    interaction: &SurfaceInteraction,
-    bsdf: &Bsdf,
-    wo: Vector3,
-    out: &mut Sink<'_, O>,
-) {
-    if !bsdf.emission.is_black() {
-        out.add(task, Term::Emission, bsdf.emission);
+impl<L: Lanes, O: Observer> Shading<'_, '_, '_, L, O> {
+    /// Emission, the ambient term, and a question to each light that may show.
+    #[inline(always)]
+    fn add_local_terms(&mut self, lanes: Bits, bsdf: &LaneBsdf<L>) {
+        let emitting = lanes.without(bsdf.emission.is_black());
+        if emitting.any() {
+            self.out.add::<L>(&self.rays, emitting, Term::Emission, bsdf.emission);
+        }
+        let ambient = bsdf.ambient * LaneColor::splat(self.scene.ambient);
+        let lit_by_ambient = lanes.without(ambient.is_black());
+        if lit_by_ambient.any() {
+            self.out.add::<L>(&self.rays, lit_by_ambient, Term::Ambient, ambient);
+        }
+        let lit = lanes & bsdf.is_lit();
+        if lit.is_empty() {
+            return;
+        }
+        // The side that is lit: the viewer's, or the outward one of surfaces that have but one.
+        let side = if bsdf.one_sided { L::splat(1.0) } else { self.surface.side(self.wo) };
+        for (light, number) in self.scene.lights.iter().zip(0..) {
+            self.ask_light(light, number, lit, bsdf, side);
+        }
     }
-    let ambient = bsdf.ambient * scene.ambient;
-    if !ambient.is_black() {
-        out.add(task, Term::Ambient, ambient);
-    }
-    if !bsdf.is_lit() {
-        return;
-    }
-    // The side that is lit: the viewer's, or the outward one of surfaces that have but one.
-    let side = if bsdf.one_sided || interaction.is_outward(wo) { 1.0 } else { -1.0 };
-    for (light, number) in scene.lights.iter().zip(0..) {
-        ask_light(light, number, task, interaction, bsdf, side, out);
-    }
-}
 
-/// The question to one light, with the terms that it would add; `side` is 1 where the outward side is lit, −1 where the other is.
-#[inline(never)]
-fn ask_light<O: Observer>(
-    light: &Light,
-    number: u32,
-    task: &RayTask,
-    interaction: &SurfaceInteraction,
-    bsdf: &Bsdf,
-    side: f64,
-    out: &mut Sink<'_, O>,
-) {
-    let Some(arriving) = light.illuminate(interaction.point) else { return };
-    let wi = arriving.to_light;
-    let normal = interaction.shading_normal.as_vector() * side;
-    // No question where the surface itself is in the way.
-    if normal.dot(wi) <= 0.0 || interaction.geometric_normal.dot(wi) * side <= 0.0 {
-        return;
+    /// The question to one light, with the terms that it would add; `side` is 1 where the outward side is lit, −1 where the
+    /// other is.
+    #[inline(always)]
+    fn ask_light(&mut self, light: &Light, number: u32, lanes: Bits, bsdf: &LaneBsdf<L>, side: L) {
+        let (lit, arriving) = light.illuminate_lanes(self.surface.point);
+        let wi = arriving.to_light;
+        let normal = self.surface.shading_normal * side;
+        // No question where the surface itself is in the way.
+        let zero = L::splat(0.0);
+        let turned_away = normal.dot(wi).le(zero) | (self.surface.geometric_normal.dot(wi) * side).le(zero);
+        let asking = (lanes & lit).without(turned_away);
+        if asking.is_empty() {
+            return;
+        }
+        let local = bsdf.reflect_light(normal, self.wo, wi);
+        let weight = self.rays.throughput::<L>() * arriving.irradiance;
+        let origin = self.surface.spawn_origin(wi);
+        // From where the ray really starts: the light may be as near as the offset.
+        let distance = arriving.distance - (origin - self.surface.point).dot(wi);
+        let [diffuse, specular] = local;
+        let shares = [weight * diffuse, weight * specular];
+        let questions = LaneQuestions { origin, direction: wi, distance, shares, light: number };
+        self.out.ask_light(&self.rays, asking, &questions);
     }
-    let local = bsdf.reflect_light(normal, -task.ray.direction, wi);
-    let weight = task.throughput * arriving.irradiance;
-    let (diffuse, specular) = (weight * local.diffuse, weight * local.specular);
-    if out.needs_no_answer(diffuse, specular) {
-        return;
-    }
-    let ray = interaction.spawn_ray(wi);
-    // From where the ray really starts: the light may be as near as the offset.
-    let distance = arriving.distance - (ray.origin - interaction.point).dot(wi);
-    out.ask(ShadowQuestion {
-        ray,
-        distance,
-        terms: [(Term::Diffuse(number), diffuse), (Term::Specular(number), specular)],
-        sample: task.sample,
-        task: task.id,
-        media: task.media,
-        extinction_scale: 1.0,
-    });
-}
 
-/// The mirrored ray, on the side it came from.
-fn spawn_reflected<O: Observer>(
-    task: &RayTask,
-    interaction: &SurfaceInteraction,
-    wo: Vector3,
-    weight: Rgb,
-    out: &mut Sink<'_, O>,
-) {
-    if weight.is_black() && !out.rules.weightless_rays {
-        return;
+    /// The mirrored rays, on the side they came from.
+    #[inline(always)]
+    fn spawn_reflected(&mut self, lanes: Bits, weight: LaneColor<L::Floats>) {
+        let lanes = if self.out.rules.weightless_rays { lanes } else { lanes.without(weight.is_black()) };
+        if lanes.is_empty() {
+            return;
+        }
+        let Self { rays, surface, wo, .. } = *self;
+        let (followed, throughput) = self.out.follow::<L>(&rays, lanes, weight);
+        if followed.any() {
+            let mut direction = reflect_lanes(wo, surface.consistent_normal(wo));
+            let flat = surface.flat_normal(wo);
+            // On a smooth mesh the shading normal may send it through the surface; then the flat one decides.
+            let back = flat.dot(direction).gt(L::splat(0.0));
+            if followed.without(back).any() {
+                direction = direction.or_where_not(back, reflect_lanes(wo, flat));
+            }
+            let (kind, origin) = (RayKind::Reflected, surface.spawn_origin(direction));
+            self.out.spawn(&rays, followed, &Spawn { kind, origin, direction, throughput, media: None, band: None });
+        }
     }
-    let (media, band) = (task.media, task.band);
-    out.spawn(task, Spawn { kind: RayKind::Reflected, weight, media, band }, || {
-        let direction = reflect(wo, consistent_normal(interaction, wo));
-        let flat = interaction.geometric_normal.face_forward(wo);
-        // On a smooth mesh the shading normal may send it through the surface; then the flat one decides.
-        interaction.spawn_ray(if flat.dot(direction) > 0.0 { direction } else { reflect(wo, flat) })
-    });
-}
-
-/// The shading normal on the viewer's side; the geometric one where the shading normal is seen from behind.
-fn consistent_normal(interaction: &SurfaceInteraction, wo: Vector3) -> Normal3 {
-    let side = if interaction.is_outward(wo) { 1.0 } else { -1.0 };
-    let shading = interaction.shading_normal * side;
-    if shading.dot(wo) > 0.0 { shading } else { interaction.geometric_normal * side }
 }

@@ -8,6 +8,7 @@
 //! (η_t c_i + η_i c_t) cancel where the indices are nearly equal (air: 1.0002926). Multiplied by their sums and with
 //! Snell's law put in, both become η_i² − η_t² times something harmless, which keeps all digits.
 
+use snell_math::lanes::{Bits, Lanes};
 use snell_math::portable;
 
 use super::refraction::cos_transmitted_squared;
@@ -34,30 +35,46 @@ pub struct FresnelAmplitudes {
 #[inline]
 #[must_use]
 pub fn fresnel_amplitudes(cos_i: f64, eta_i: f64, eta_t: f64) -> Option<FresnelAmplitudes> {
-    let cos_i = cos_i.clamp(0.0, 1.0);
+    let (exist, Amplitudes { cos_i, cos_t, r_s, r_p, sum_s, sum_p }) = amplitudes(cos_i, eta_i, eta_t);
     if eta_i == eta_t {
         // No boundary, even at grazing incidence, where the quotients are 0 / 0.
-        return Some(FresnelAmplitudes { cos_t: cos_i, r_s: 0.0, r_p: 0.0, t_s: 1.0, t_p: 1.0 });
+        return Some(FresnelAmplitudes { cos_t: cos_i, r_s, r_p, t_s: 1.0, t_p: 1.0 });
     }
+    let [t_s, t_p] = [sum_s, sum_p].map(|sum| 2.0 * eta_i * cos_i / sum);
+    exist.any().then_some(FresnelAmplitudes { cos_t, r_s, r_p, t_s, t_p })
+}
+
+/// What all of Fresnel's quantities are made from, side by side.
+struct Amplitudes<L> {
+    /// In [0, 1].
+    cos_i: L,
+    cos_t: L,
+    r_s: L,
+    r_p: L,
+    /// The denominators of the perpendicular and the parallel amplitudes.
+    sum_s: L,
+    sum_p: L,
+}
+
+/// See [`fresnel_amplitudes`]; the lanes that have them.
+#[inline(always)]
+fn amplitudes<L: Lanes>(cos_i: L, eta_i: L, eta_t: L) -> (Bits, Amplitudes<L>) {
+    let (zero, one) = (L::splat(0.0), L::splat(1.0));
+    let cos_i = cos_i.larger(zero).smaller(one);
     let eta = eta_i / eta_t;
     let cos_t_squared = cos_transmitted_squared(cos_i, eta);
-    if cos_t_squared <= 0.0 {
-        return None;
-    }
+    let total = cos_t_squared.le(zero);
     let cos_t = cos_t_squared.sqrt();
     let sum_s = eta_i * cos_i + eta_t * cos_t;
     let sum_p = eta_t * cos_i + eta_i * cos_t;
     let contrast = (eta_i - eta_t) * (eta_i + eta_t);
-    let sin_i_squared = (1.0 - cos_i) * (1.0 + cos_i);
+    let sin_i_squared = (one - cos_i) * (one + cos_i);
     // Zero at Brewster's angle, where tan θ_i = η_t / η_i.
     let brewster = cos_i * cos_i - eta * eta * sin_i_squared;
-    Some(FresnelAmplitudes {
-        cos_t,
-        r_s: contrast / (sum_s * sum_s),
-        r_p: -contrast * brewster / (sum_p * sum_p),
-        t_s: 2.0 * eta_i * cos_i / sum_s,
-        t_p: 2.0 * eta_i * cos_i / sum_p,
-    })
+    let none = eta_i.same(eta_t);
+    let r_s = zero.or_where_not(none, contrast / (sum_s * sum_s));
+    let r_p = zero.or_where_not(none, -contrast * brewster / (sum_p * sum_p));
+    (L::all().without(total) | none, Amplitudes { cos_i, cos_t, r_s, r_p, sum_s, sum_p })
 }
 
 /// The shares of power that a smooth boundary reflects, perpendicular (s) and parallel (p) to the plane of incidence,
@@ -65,12 +82,17 @@ pub fn fresnel_amplitudes(cos_i: f64, eta_i: f64, eta_t: f64) -> Option<FresnelA
 #[inline]
 #[must_use]
 pub fn fresnel_dielectric_polarized(cos_i: f64, eta_i: f64, eta_t: f64) -> [f64; 2] {
-    match fresnel_amplitudes(cos_i, eta_i, eta_t) {
-        // Grazing light is all reflected, which rounding must not spoil.
-        Some(_) if cos_i <= 0.0 && eta_i != eta_t => [1.0, 1.0],
-        Some(FresnelAmplitudes { r_s, r_p, .. }) => [(r_s * r_s).min(1.0), (r_p * r_p).min(1.0)],
-        None => [1.0, 1.0],
-    }
+    polarized(cos_i, eta_i, eta_t)
+}
+
+#[inline(always)]
+fn polarized<L: Lanes>(cos_i: L, eta_i: L, eta_t: L) -> [L; 2] {
+    let (exist, Amplitudes { r_s, r_p, .. }) = amplitudes(cos_i, eta_i, eta_t);
+    // Grazing light is all reflected, which rounding must not spoil.
+    let partly = exist.without(cos_i.le(L::splat(0.0)).without(eta_i.same(eta_t)));
+    let one = L::splat(1.0);
+    let (s, p) = (r_s * r_s, r_p * r_p);
+    [s.or_where_not(partly & s.lt(one), one), p.or_where_not(partly & p.lt(one), one)]
 }
 
 /// The share of unpolarised light that a smooth boundary reflects, in [0, 1]: exactly 1 under total internal reflection
@@ -87,8 +109,15 @@ pub fn fresnel_dielectric_polarized(cos_i: f64, eta_i: f64, eta_t: f64) -> [f64;
 #[inline]
 #[must_use]
 pub fn fresnel_dielectric(cos_i: f64, eta_i: f64, eta_t: f64) -> f64 {
-    let [s, p] = fresnel_dielectric_polarized(cos_i, eta_i, eta_t);
-    0.5 * (s + p)
+    fresnel_dielectric_lanes(cos_i, eta_i, eta_t)
+}
+
+/// As [`fresnel_dielectric`], side by side.
+#[inline(always)]
+#[must_use]
+pub fn fresnel_dielectric_lanes<L: Lanes>(cos_i: L, eta_i: L, eta_t: L) -> L {
+    let [s, p] = polarized(cos_i, eta_i, eta_t);
+    L::splat(0.5) * (s + p)
 }
 
 /// Brewster's angle in radians: light that arrives under it from `eta_i` towards `eta_t` is reflected without any

@@ -12,11 +12,12 @@ mod reflection;
 mod refraction;
 
 pub use fresnel::{
-    FresnelAmplitudes, brewster_angle, fresnel_amplitudes, fresnel_dielectric, fresnel_dielectric_polarized,
+    FresnelAmplitudes, brewster_angle, fresnel_amplitudes, fresnel_dielectric, fresnel_dielectric_lanes,
+    fresnel_dielectric_polarized,
 };
 pub use medium::{beer_lambert, henyey_greenstein};
-pub use reflection::reflect;
-pub use refraction::{cos_transmitted, critical_angle, refract};
+pub use reflection::{reflect, reflect_lanes};
+pub use refraction::{cos_transmitted, critical_angle, refract, refract_lanes};
 
 #[cfg(test)]
 mod tests;

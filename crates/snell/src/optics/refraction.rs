@@ -3,15 +3,17 @@
 //! Follows: CS5310, lecture 3, "Refraction"; Heckbert and Hanrahan, "Beam Tracing Polygonal Objects", SIGGRAPH 1984,
 //! appendix. η = η_i / η_t throughout; cosines with the normal are those of the angles in [0, π/2].
 
+use snell_math::lanes::{Bits, LaneVector, Lanes};
 use snell_math::{Normal3, Vector3, portable};
 
 /// The square of the transmitted ray's cosine; negative under total internal reflection.
 ///
 /// The textbook's 1 − η² (1 − c²), but summed as (1 − η²) + (η c)²: exact where η = 1, and for η < 1 a sum of positive
 /// numbers, so that nothing cancels at grazing angles.
-#[inline]
-pub(super) fn cos_transmitted_squared(cos_i: f64, eta: f64) -> f64 {
-    (1.0 - eta) * (1.0 + eta) + (eta * cos_i) * (eta * cos_i)
+#[inline(always)]
+pub(super) fn cos_transmitted_squared<L: Lanes>(cos_i: L, eta: L) -> L {
+    let one = L::splat(1.0);
+    (one - eta) * (one + eta) + (eta * cos_i) * (eta * cos_i)
 }
 
 /// The cosine of the angle between the transmitted ray and the normal, or `None` under total internal reflection.
@@ -40,9 +42,19 @@ pub fn cos_transmitted(cos_i: f64, eta: f64) -> Option<f64> {
 #[inline]
 #[must_use]
 pub fn refract(wo: Vector3, normal: Normal3, eta: f64) -> Option<Vector3> {
+    let (refracts, direction) = refract_lanes::<f64>(wo.into(), normal.into(), eta);
+    refracts.any().then(|| direction.into())
+}
+
+/// As [`refract`], side by side: the lanes where light goes on, and where it goes.
+#[inline(always)]
+#[must_use]
+pub fn refract_lanes<L: Lanes>(wo: LaneVector<L>, normal: LaneVector<L>, eta: L) -> (Bits, LaneVector<L>) {
     let cos_i = normal.dot(wo);
-    let cos_t = cos_transmitted(cos_i, eta)?;
-    Some((normal.as_vector() * (eta * cos_i - cos_t) - wo * eta).normalize())
+    let squared = cos_transmitted_squared(cos_i, eta);
+    let refracts = squared.ge(L::splat(0.0));
+    let cos_t = squared.sqrt();
+    (refracts, (normal * (eta * cos_i - cos_t) - wo * eta).normalize())
 }
 
 /// The angle of incidence in radians beyond which all light is reflected, for light that goes from `eta_i` towards

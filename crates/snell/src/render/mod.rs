@@ -14,6 +14,7 @@ use std::sync::Mutex;
 
 use rayon::prelude::*;
 use snell_image::{Image, Layers};
+use snell_math::lanes::{Lanes, WIDTH};
 use snell_math::{Ray, Rgb, sampling};
 
 pub use settings::RenderSettings;
@@ -21,12 +22,14 @@ pub use settings::RenderSettings;
 use crate::camera::Camera;
 use crate::compile::CompiledScene;
 use crate::film::{Film, PixelSum};
+use crate::geometry::Hit;
 use crate::integrator::{Integrator, Rules, Whitted};
 use crate::observe::{NoObserver, RayTree};
 use crate::render::adaptive::{Contrast, Display, Range};
 use crate::render::layers::{FirstHit, FirstHits};
 use crate::statistics::Statistics;
-use crate::trace::{Scratch, Tracer};
+use crate::task::RayRows;
+use crate::trace::{CameraRays, Scratch, Tracer};
 use crate::viewing::ViewingError;
 
 /// Told how far rendering is, and asked whether to go on. Called from several threads.
@@ -129,9 +132,9 @@ pub fn explain(
     let mut scratch = Scratch::default();
     let (ray, split) = job.camera_sample(pixel, sampling::pixel_sample(sample), sample);
     let far = camera.far_distance(&ray);
-    job.tracer().trace([(ray, split)], &mut scratch, &mut Statistics::default(), &mut tree, |_, _, hit| {
-        *hit = hit.filter(|hit| hit.t <= far);
-    });
+    let camera_ray = [(ray, split)];
+    let mut to_far = |_: usize, _: &Ray, hit: &mut Option<Hit>| *hit = hit.filter(|hit| hit.t <= far);
+    job.tracer().trace(camera_ray.as_slice(), &mut scratch, &mut Statistics::default(), &mut tree, Some(&mut to_far));
     Ok(tree)
 }
 
@@ -155,11 +158,49 @@ impl Samples {
     fn new(numbers: std::ops::Range<u32>) -> Self {
         Self { first: numbers.start, places: numbers.map(sampling::pixel_sample).collect() }
     }
+}
 
-    /// Each one's place in the pixel and in the sequence.
-    fn iter(&self) -> impl Iterator<Item = ([f64; 2], u32)> {
-        self.places.iter().copied().zip(self.first..)
+/// The camera rays of some pixels, sample by sample in each.
+struct TileRays<'a> {
+    camera: &'a Camera,
+    width: u32,
+    pixels: &'a [u32],
+    samples: &'a Samples,
+}
+
+impl CameraRays for TileRays<'_> {
+    fn count(&self) -> usize {
+        self.pixels.len() * self.samples.places.len()
     }
+
+    #[inline(always)]
+    fn generate<L: Lanes>(&self, first: usize, rows: &mut RayRows, split: &mut [u32; WIDTH], at: usize) {
+        let (mut xs, mut ys) = ([0.0; WIDTH], [0.0; WIDTH]);
+        let per_pixel = self.samples.places.len();
+        let (mut pixel, mut sample) = (first / per_pixel, first % per_pixel);
+        for lane in 0..L::COUNT {
+            // Beyond the last one it is the last one again.
+            let place = self.pixels[pixel.min(self.pixels.len() - 1)];
+            let (x, y) = (place % self.width, place / self.width);
+            let [dx, dy] = self.samples.places[sample];
+            (xs[lane], ys[lane]) = (f64::from(x) + dx, f64::from(y) + dy);
+            split[at + lane] = split_place([x, y], self.samples.first + sample as u32);
+            sample += 1;
+            if sample == per_pixel {
+                (pixel, sample) = (pixel + 1, 0);
+            }
+        }
+        let [origin, direction] = self.camera.generate_rays(L::load(&xs, 0), L::load(&ys, 0));
+        origin.store(&mut rows.origin, at);
+        direction.store(&mut rows.direction, at);
+    }
+}
+
+/// The number of the place where a sample of a pixel splits white light.
+#[inline]
+fn split_place([x, y]: [u32; 2], sample: u32) -> u32 {
+    // Neighbours begin at different places, so that what one sample alone cannot show, a few of them show together.
+    BAYER[y as usize % 4][x as usize % 4] + sample
 }
 
 /// What the tiles have given so far.
@@ -223,13 +264,8 @@ impl<I: Integrator> Job<'_, I> {
             if progress.is_cancelled() {
                 break;
             }
-            let width = self.settings.width;
-            let rays = pixels.iter().flat_map(|&pixel| {
-                samples
-                    .iter()
-                    .map(move |(place, number)| self.camera_sample([pixel % width, pixel / width], place, number))
-            });
-            let colors = self.tracer().trace(rays, scratch, &mut statistics, &mut NoObserver, |number, ray, hit| {
+            let rays = TileRays { camera: self.camera, width: self.settings.width, pixels, samples };
+            let mut watch = |number: usize, ray: &Ray, hit: &mut Option<Hit>| {
                 let far = self.camera.far_distance(ray);
                 if hit.is_some_and(|hit| hit.t > far) {
                     *hit = None;
@@ -237,7 +273,11 @@ impl<I: Integrator> Job<'_, I> {
                 if self.settings.layers && samples.first == 0 && number % per_pixel == 0 {
                     first_hits.push(FirstHit::new(self.scene, self.camera, ray, hit.as_ref()));
                 }
-            });
+            };
+            let is_watched = self.settings.layers || self.camera.planes()[1] > f64::NEG_INFINITY;
+            let watch: Option<&mut dyn FnMut(usize, &Ray, &mut Option<Hit>)> =
+                if is_watched { Some(&mut watch) } else { None };
+            let colors = self.tracer().trace(&rays, scratch, &mut statistics, &mut NoObserver, watch);
             // All that can be done before the lock.
             sums.clear();
             sums.extend(colors.chunks(per_pixel).map(|colors| {
@@ -274,14 +314,13 @@ impl<I: Integrator> Job<'_, I> {
     #[inline]
     fn camera_sample(&self, [x, y]: [u32; 2], [dx, dy]: [f64; 2], number: u32) -> (Ray, u32) {
         let ray = self.camera.generate_ray(f64::from(x) + dx, f64::from(y) + dy);
-        // Neighbours begin at different places, so that what one sample alone cannot show, a few of them show together.
-        (ray, BAYER[y as usize % 4][x as usize % 4] + number)
+        (ray, split_place([x, y], number))
     }
 
     fn tracer(&self) -> Tracer<'_, I> {
-        let RenderSettings { depth, min_weight, weightless_rays, shadows, .. } = *self.settings;
+        let RenderSettings { depth, min_weight, weightless_rays, shadows, instructions, .. } = *self.settings;
         let rules = Rules { depth, min_weight, weightless_rays, shadows };
-        Tracer { scene: self.scene, integrator: self.integrator, rules }
+        Tracer { scene: self.scene, integrator: self.integrator, rules, instructions }
     }
 
     /// The picture, or the given pixels of it, in square tiles; each is a list of pixel places.

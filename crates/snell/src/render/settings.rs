@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use snell_image::tone::ToneCurve;
+use snell_math::lanes::InstructionSet;
 use snell_scene::scene::{self, Antialiasing, PixelGrid, Shadows};
 
 use crate::camera::Camera;
@@ -34,6 +35,8 @@ pub struct RenderSettings {
     pub tile_size: u32,
     /// How many threads; one for each core where `None`. The picture does not depend on it.
     pub threads: Option<usize>,
+    /// By which instructions rays are traced side by side. The picture does not depend on it.
+    pub instructions: InstructionSet,
     /// Whether depth, normals and objects are wanted too.
     pub layers: bool,
     /// How the picture will be shown: what adaptive antialiasing takes for different.
@@ -57,6 +60,7 @@ impl From<&scene::Settings> for RenderSettings {
             pixel_grid: settings.pixel_grid,
             tile_size: 32,
             threads: None,
+            instructions: InstructionSet::best(),
             layers: false,
             tone: settings.tone,
             exposure: settings.exposure,

@@ -24,13 +24,16 @@ pub(crate) mod tests;
 mod torus;
 pub mod triangle_mesh;
 
+use snell_math::lanes::{LaneVector, Lanes};
 use snell_math::{Bounds3, Normal3, Point3, Ray, Transform};
 
 pub use cuboid::Cuboid;
 pub use disk::Disk;
 pub use frustum::Frustum;
+pub(crate) use plane::LanePlanes;
 pub use plane::Plane;
 pub use rectangle::Rectangle;
+pub(crate) use sphere::LaneSpheres;
 pub use sphere::Sphere;
 pub use sphere_pairs::SpherePairs;
 pub use torus::Torus;
@@ -44,6 +47,22 @@ pub struct ShapeHit {
     pub t: f64,
     /// Which part of the shape: a face of a box, a cap, a triangle; 0 where there is only one.
     pub part: u32,
+}
+
+/// Rays side by side: one in each lane.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LaneRay<L> {
+    pub(crate) origin: LaneVector<L>,
+    pub(crate) direction: LaneVector<L>,
+}
+
+impl<L: Lanes> From<&Ray> for LaneRay<L> {
+    /// The same one in all lanes.
+    #[inline(always)]
+    fn from(ray: &Ray) -> Self {
+        let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
+        Self { origin: LaneVector::splat(origin), direction: LaneVector::splat(direction) }
+    }
 }
 
 /// One place where a line passes through the boundary of a solid.

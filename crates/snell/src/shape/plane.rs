@@ -1,10 +1,11 @@
 //! The plane, as a surface, and as the half-space below it.
 
+use snell_math::lanes::{Bits, LaneVector, Lanes};
 use snell_math::{Bounds3, Normal3, Point3, Ray, Transform, Vector3};
 
 use super::frame::Frame;
 use super::rounding::gamma;
-use super::{Crossing, ShapeHit, SurfacePoint};
+use super::{Crossing, LaneRay, ShapeHit, SurfacePoint};
 
 /// All points p with (p − point) · normal = 0; solid where the product is negative.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,7 +28,7 @@ impl Plane {
     /// Where a ray meets the plane; infinite or NaN where they are parallel, which no comparison lets pass.
     #[inline]
     pub(super) fn parameter(&self, ray: &Ray) -> f64 {
-        (self.point - ray.origin).dot(self.normal) / ray.direction.dot(self.normal)
+        LanePlanes::<f64>::from(self).parameter(&LaneRay::from(ray))
     }
 
     /// See [`super::Shape::intersect`].
@@ -44,18 +45,11 @@ impl Plane {
         }
     }
 
-    /// The point is moved onto the plane along the normal. What remains is the rounding of its height over the plane
-    /// (differences 1, products and sums 3, the normal's own length 3, each for the point and for the spawned ray that
-    /// is tested next) and of its coordinates. Directions are above the plane or not by the very product with the normal
-    /// that intersection divides by, so they add nothing.
+    /// See [`LanePlanes::surface`].
     #[inline]
     pub(crate) fn surface_geometry(&self, ray: &Ray, hit: ShapeHit) -> SurfacePoint {
-        let raw = ray.at(hit.t);
-        let height = (raw - self.point).dot(self.normal);
-        let point = raw - self.normal * height;
-        let reach = (point - self.point).0.abs().element_sum();
-        let error = gamma(20) * (point.max_abs() + reach + height.abs());
-        SurfacePoint::flat(point, Normal3::from(self.normal), error)
+        let (point, error) = LanePlanes::<f64>::from(self).surface(&LaneRay::from(ray), hit.t);
+        SurfacePoint::flat(point.into(), Normal3::from(self.normal), error)
     }
 
     pub(super) fn uv(&self, p: Point3) -> [f64; 2] {
@@ -83,5 +77,51 @@ impl Plane {
     /// A plane stays one under any affine map.
     pub(super) fn transformed(&self, map: &Transform) -> Option<Self> {
         Some(Self::new(map.point(self.point), map.normal(Normal3::from(self.normal)).as_vector()))
+    }
+}
+
+/// Planes side by side: one in each lane.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LanePlanes<L> {
+    pub(crate) point: LaneVector<L>,
+    pub(crate) normal: LaneVector<L>,
+}
+
+impl<L: Lanes> From<&Plane> for LanePlanes<L> {
+    /// The same one in all lanes.
+    #[inline(always)]
+    fn from(plane: &Plane) -> Self {
+        Self { point: LaneVector::splat(plane.point.to_array()), normal: LaneVector::splat(plane.normal.to_array()) }
+    }
+}
+
+impl<L: Lanes> LanePlanes<L> {
+    /// Where rays meet the planes; infinite or NaN where they are parallel, which no comparison lets pass.
+    #[inline(always)]
+    fn parameter(&self, ray: &LaneRay<L>) -> L {
+        (self.point - ray.origin).dot(self.normal) / ray.direction.dot(self.normal)
+    }
+
+    /// The hit with 0 < t < `t_max`, of the lanes that have one.
+    #[inline(always)]
+    pub(crate) fn intersect(&self, ray: &LaneRay<L>, t_max: L) -> (Bits, L) {
+        let t = self.parameter(ray);
+        (t.gt(L::splat(0.0)) & t.lt(t_max), t)
+    }
+
+    /// The point, and its error, of hits at `t`.
+    ///
+    /// The point is moved onto the plane along the normal. What remains is the rounding of its height over the plane
+    /// (differences 1, products and sums 3, the normal's own length 3, each for the point and for the spawned ray that
+    /// is tested next) and of its coordinates. Directions are above the plane or not by the very product with the normal
+    /// that intersection divides by, so they add nothing.
+    #[inline(always)]
+    pub(crate) fn surface(&self, ray: &LaneRay<L>, t: L) -> (LaneVector<L>, L) {
+        let raw = ray.origin + ray.direction * t;
+        let height = (raw - self.point).dot(self.normal);
+        let point = raw - self.normal * height;
+        let across = point - self.point;
+        let reach = across.x.abs() + across.y.abs() + across.z.abs();
+        (point, L::splat(gamma(20)) * (point.max_abs() + reach + height.abs()))
     }
 }

@@ -5,15 +5,16 @@
 //! and small spheres keep their shape, and the root that would cancel from the product of both, so that rays starting
 //! near huge ones do. The original form: Glassner (ed.), An Introduction to Ray Tracing (1989), section 2.2.
 
-use snell_math::{Bounds3, Normal3, Point3, Ray, Transform, Vector3, portable};
+use snell_math::lanes::{Bits, LaneVector, Lanes};
+use snell_math::{Bounds3, Point3, Ray, Transform, portable};
 
 use super::frame::turn;
 use super::rounding::gamma;
 use super::span::Span;
-use super::{Crossing, ShapeHit, SurfacePoint};
+use super::{Crossing, LaneRay, ShapeHit, SurfacePoint};
 
 /// How much further than its radius a line must be from a sphere's centre to miss it for sure, in squares and relative to the
-/// distance of the origin: 512 u, while the rounding errors of that test and of [`Sphere::span`] are less than 100 u.
+/// distance of the origin: 512 u, while the rounding errors of that test and of [`LaneSpheres::span`] are less than 100 u.
 pub(super) const MISS_MARGIN: f64 = 1.0 / (1_u64 << 44) as f64;
 /// Smaller numbers than this may lose digits, and the test says nothing.
 pub(super) const MISS_REACH: f64 = 1e-280;
@@ -35,20 +36,8 @@ impl Sphere {
 
     #[inline]
     fn span(&self, ray: &Ray) -> Option<Span> {
-        let (f, d) = (self.center - ray.origin, ray.direction);
-        let a = d.length_squared();
-        let b = f.dot(d);
-        let squared = self.radius * self.radius;
-        let perpendicular = f - d * (b / a);
-        let discriminant = squared - perpendicular.length_squared();
-        // Negated, so that NaN from a broken ray ends here too; a line that just touches does not hit.
-        if !(discriminant > 0.0 && a > 0.0) {
-            return None;
-        }
-        let q = b + (a * discriminant).sqrt().copysign(b);
-        let (far, near) = (q / a, (f.length_squared() - squared) / q);
-        let (enter, leave) = if q < 0.0 { (far, near) } else { (near, far) };
-        Span::new(ShapeHit { t: enter, part: 0 }, ShapeHit { t: leave, part: 0 })
+        let (met, [enter, leave]) = LaneSpheres::<f64>::from(self).span(&LaneRay::from(ray));
+        met.any().then(|| Span { enter: ShapeHit { t: enter, part: 0 }, leave: ShapeHit { t: leave, part: 0 } })
     }
 
     /// See [`super::Shape::intersect`].
@@ -73,18 +62,9 @@ impl Sphere {
         [enter, leave].map(|hit| (hit.t > 0.0 && hit.t < t_max).then_some(hit))
     }
 
-    /// Whether [`Sphere::span`], without a division or a root, can be known to have no end with t > 0: most spheres that a
-    /// ray is tested with end here. Never true where it has one, not even by its own rounding.
     #[inline]
     fn is_surely_missed(&self, ray: &Ray) -> bool {
-        let (f, d) = (self.center - ray.origin, ray.direction);
-        let (a, b, c) = (d.length_squared(), f.dot(d), f.length_squared());
-        let squared = self.radius * self.radius;
-        // From outside and away from it: the numerator and the sum that give both ends are what `span` computes.
-        let is_behind = b < 0.0 && c >= squared;
-        // The line's squared distance from the centre against the squared radius, both times a.
-        let (distance, reach) = (c * a - b * b, a * (squared + MISS_MARGIN * c));
-        is_behind || distance > reach && reach > MISS_REACH && distance < f64::INFINITY
+        LaneSpheres::<f64>::from(self).surely_missed(&LaneRay::from(ray)).any()
     }
 
     pub(super) fn crossings(&self, ray: &Ray, out: &mut Vec<Crossing>) {
@@ -93,14 +73,11 @@ impl Sphere {
         }
     }
 
-    /// The direction of the hit from the centre is all that is taken from the ray, so errors of t only move the point
-    /// along the surface. The error is counted in `rounding.rs`: the frame's roundings do not occur here.
+    /// See [`LaneSpheres::surface`].
     #[inline]
     pub(crate) fn surface_geometry(&self, ray: &Ray, hit: ShapeHit) -> SurfacePoint {
-        let local = (ray.origin - self.center) + ray.direction * hit.t;
-        let normal = local.try_normalize().unwrap_or(Vector3::Y);
-        let error = gamma(32) * (self.center.max_abs() + self.radius);
-        SurfacePoint::flat(self.center + normal * self.radius, Normal3::from(normal), error)
+        let (point, normal, error) = LaneSpheres::<f64>::from(self).surface(&LaneRay::from(ray), hit.t);
+        SurfacePoint::flat(point.into(), normal.into(), error)
     }
 
     pub(super) fn uv(&self, p: Point3) -> [f64; 2] {
@@ -120,5 +97,94 @@ impl Sphere {
 
     pub(super) fn transformed(&self, map: &Transform) -> Option<Self> {
         Some(Self::new(map.point(self.center), self.radius * map.uniform_scale()?))
+    }
+}
+
+/// Spheres side by side: one in each lane.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LaneSpheres<L> {
+    pub(crate) center: LaneVector<L>,
+    pub(crate) radius: L,
+}
+
+impl<L: Lanes> From<&Sphere> for LaneSpheres<L> {
+    /// The same one in all lanes.
+    #[inline(always)]
+    fn from(sphere: &Sphere) -> Self {
+        Self { center: LaneVector::splat(sphere.center.to_array()), radius: L::splat(sphere.radius) }
+    }
+}
+
+impl<L: Lanes> LaneSpheres<L> {
+    /// Where the lines of rays enter and leave; the lanes that do both.
+    #[inline(always)]
+    fn span(&self, ray: &LaneRay<L>) -> (Bits, [L; 2]) {
+        let zero = L::splat(0.0);
+        let (f, d) = (self.center - ray.origin, ray.direction);
+        let a = d.length_squared();
+        let b = f.dot(d);
+        let squared = self.radius * self.radius;
+        let perpendicular = f - d * (b / a);
+        let discriminant = squared - perpendicular.length_squared();
+        // So written, NaN from a broken ray ends here too; a line that just touches does not hit.
+        let met = discriminant.gt(zero) & a.gt(zero);
+        if met.is_empty() {
+            return (met, [zero; 2]);
+        }
+        let q = b + (a * discriminant).sqrt().copysign(b);
+        let (far, near) = (q / a, (f.length_squared() - squared) / q);
+        let backward = q.lt(zero);
+        let (enter, leave) = (far.or_where_not(backward, near), near.or_where_not(backward, far));
+        (met & enter.lt(leave), [enter, leave])
+    }
+
+    /// Whether [`LaneSpheres::span`], without a division or a root, can be known to have no end with t > 0: most spheres that
+    /// a ray is tested with end here. Never true where it has one, not even by its own rounding.
+    #[inline(always)]
+    fn surely_missed(&self, ray: &LaneRay<L>) -> Bits {
+        let (f, d) = (self.center - ray.origin, ray.direction);
+        let (a, b, c) = (d.length_squared(), f.dot(d), f.length_squared());
+        let squared = self.radius * self.radius;
+        // From outside and away from it: the numerator and the sum that give both ends are what `span` computes.
+        let is_behind = b.lt(L::splat(0.0)) & c.ge(squared);
+        // The line's squared distance from the centre against the squared radius, both times a.
+        let (distance, reach) = (c * a - b * b, a * (squared + L::splat(MISS_MARGIN) * c));
+        let is_beside = distance.gt(reach) & reach.gt(L::splat(MISS_REACH)) & distance.lt(L::splat(f64::INFINITY));
+        is_behind | is_beside
+    }
+
+    /// The nearest hit with 0 < t < `t_max`, of the lanes that have one.
+    #[inline(always)]
+    pub(crate) fn intersect(&self, ray: &LaneRay<L>, t_max: L) -> (Bits, L) {
+        if self.surely_missed(ray) & L::all() == L::all() {
+            return (Bits::NONE, t_max);
+        }
+        let (met, [enter, leave]) = self.span(ray);
+        let zero = L::splat(0.0);
+        let t = enter.or_where_not(enter.gt(zero), leave);
+        (met & t.gt(zero) & t.lt(t_max), t)
+    }
+
+    /// As [`Sphere::hits_before`]: for each of both places, the lanes that pass there and where.
+    #[inline(always)]
+    pub(crate) fn hits_before(&self, ray: &LaneRay<L>, t_max: L) -> [(Bits, L); 2] {
+        if self.surely_missed(ray) & L::all() == L::all() {
+            return [(Bits::NONE, t_max); 2];
+        }
+        let (met, [enter, leave]) = self.span(ray);
+        let zero = L::splat(0.0);
+        [(met & enter.gt(zero) & enter.lt(t_max), enter), (met & leave.gt(zero) & leave.lt(t_max), leave)]
+    }
+
+    /// The point, the outward normal and the error of the point of hits at `t`.
+    ///
+    /// The direction of the hit from the centre is all that is taken from the ray, so errors of t only move the point
+    /// along the surface. The error is counted in `rounding.rs`: the frame's roundings do not occur here.
+    #[inline(always)]
+    pub(crate) fn surface(&self, ray: &LaneRay<L>, t: L) -> (LaneVector<L>, LaneVector<L>, L) {
+        let local = (ray.origin - self.center) + ray.direction * t;
+        let normal = local.try_normalize_or_y();
+        let error = L::splat(gamma(32)) * (self.center.max_abs() + self.radius);
+        (self.center + normal * self.radius, normal, error)
     }
 }

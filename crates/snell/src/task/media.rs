@@ -25,7 +25,7 @@ pub struct Inside {
 }
 
 /// A ray's way through one boundary.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Crossing {
     /// The body that is there before the boundary.
     pub before: Option<Inside>,
@@ -54,6 +54,11 @@ struct Cell {
 #[derive(Clone, Debug, Default)]
 pub struct MediumStacks {
     cells: Vec<Cell>,
+}
+
+impl MediumStack {
+    /// Outside of everything.
+    pub const EMPTY: Self = Self(0);
 }
 
 impl MediumStacks {

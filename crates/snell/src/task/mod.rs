@@ -1,10 +1,12 @@
 //! What travels through the tracing loop: rays to be traced, questions to lights, and the names of what comes of them.
 
 mod media;
+mod rows;
 
 use snell_math::{Ray, Rgb};
 
 pub use media::{Crossing, Inside, MediumStack, MediumStacks};
+pub use rows::{QuestionNotes, QuestionQueue, QuestionRows, Queue, RayNotes, RayQueue, RayRows, column, set_column};
 
 /// A ray to be traced, with its weight to a sample of a pixel. "Rays are tasks": the lecture's recursion is a list of these.
 #[derive(Clone, Copy, Debug)]

@@ -129,6 +129,7 @@ impl Background {
     }
 
     /// The colour of a background that is the same everywhere.
+    #[inline]
     #[must_use]
     pub fn constant(&self) -> Option<Rgb> {
         match &self.0 {

@@ -6,29 +6,39 @@
 //! ("An Improved Illumination Model for Shaded Display", CACM 23(6), 1980) as a work list: nothing overflows a stack, what
 //! is not followed is known, and both queues can be answered in whichever way is fastest.
 //!
-//! The order of additions to a sample depends only on the sample: its rays keep their order in every queue, whatever other
-//! samples share the tile. So a picture's bits do not depend on tiles or threads.
+//! Queues are answered and shaded eight rays at a time, see [`snell_math::lanes`]; each ray for itself, and by the same code, where
+//! somebody watches.
+//!
+//! The order of additions to a sample depends only on the sample: its rays keep their order from queue to queue, whatever other
+//! samples share the tile, and rays side by side belong to different samples. So a picture's bits do not depend on tiles, threads
+//! or instructions.
 
 mod shadow;
 #[cfg(test)]
 mod tests;
 
+use snell_math::lanes::{Bits, InstructionSet, Lanes, WIDTH, Work, dispatch};
 use snell_math::{Point3, Ray, Rgb};
 
 use crate::compile::CompiledScene;
-use crate::geometry::{Hit, QueryScratch};
-use crate::integrator::{Integrator, Rules, Sink};
+use crate::geometry::{Hit, HitRows, QueryScratch};
+use crate::integrator::{Integrator, QUEUES, Rules, Sink};
+use crate::interaction::SurfaceRows;
 use crate::observe::Observer;
 use crate::statistics::Statistics;
-use crate::task::{MediumStack, MediumStacks, RayKind, RayTask, ShadowQuestion};
+use crate::task::{
+    MediumStack, MediumStacks, QuestionQueue, RayKind, RayNotes, RayQueue, RayRows, column, set_column,
+};
 
 /// The queues and buffers of one worker, reused from tile to tile so that rays cost no allocation.
 #[derive(Debug, Default)]
 pub struct Scratch {
-    current: Vec<RayTask>,
-    next: Vec<RayTask>,
-    hits: Vec<Option<Hit>>,
-    questions: Vec<ShadowQuestion>,
+    current: [RayQueue; QUEUES],
+    next: [RayQueue; QUEUES],
+    /// For each row of rays of the generation, what they meet.
+    hits: Vec<HitRows>,
+    surfaces: SurfaceRows,
+    questions: QuestionQueue,
     sums: Vec<Rgb>,
     spawned: Vec<u32>,
     media: MediumStacks,
@@ -45,110 +55,256 @@ pub struct Tracer<'a, I> {
     pub integrator: &'a I,
     /// The rules.
     pub rules: Rules,
+    /// By which instructions; what comes of it does not depend on them.
+    pub instructions: InstructionSet,
 }
 
 impl<I: Integrator> Tracer<'_, I> {
     /// Traces camera rays, one a sample, each with the number of its place to split white light, and all that follows from
     /// them; gives the samples' colours in the same order.
     ///
-    /// `first_hits` is shown what each camera ray met, and may take it away: what lies beyond the far plane, say.
+    /// `first_hits` is shown what each camera ray met, and may take it away: what lies beyond the far plane, say. `None` where
+    /// there is nothing to be shown.
     pub fn trace<'s, O: Observer>(
         &self,
-        camera_rays: impl IntoIterator<Item = (Ray, u32)>,
+        camera_rays: &(impl CameraRays + ?Sized),
         scratch: &'s mut Scratch,
         statistics: &mut Statistics,
         observer: &mut O,
-        mut first_hits: impl FnMut(usize, &Ray, &mut Option<Hit>),
+        first_hits: Option<&mut dyn FnMut(usize, &Ray, &mut Option<Hit>)>,
     ) -> &'s [Rgb] {
-        let scene = self.scene;
-        let Scratch { current, next, hits, questions, sums, spawned, media, shadow, query } = scratch;
-        let mut next_id = 0;
-        current.clear();
-        media.clear();
-        for (ray, split) in camera_rays {
-            let media = media_at(scene, ray.origin, current.last(), media, query);
-            let task = camera_task(ray, next_id, split, media);
-            next_id += 1;
-            observer.ray(&task);
-            current.push(task);
+        let count = camera_rays.count();
+        scratch.current[0].fill(count);
+        scratch.media.clear();
+        scratch.sums.clear();
+        scratch.sums.resize(count, Rgb::BLACK);
+        statistics.camera_rays += count as u64;
+        statistics.max_depth = statistics.max_depth.max(u32::from(count > 0));
+        let next_id = count as u32;
+        let generations = Generations { tracer: self, scratch: &mut *scratch, statistics, observer, first_hits, next_id };
+        let whole = Whole { camera_rays, generations };
+        if O::WATCHES {
+            // A watcher is told of one ray after the other.
+            whole.run::<f64>();
+        } else {
+            dispatch(self.instructions, whole);
         }
-        sums.clear();
-        sums.resize(current.len(), Rgb::BLACK);
-        statistics.camera_rays += current.len() as u64;
-        statistics.max_depth = statistics.max_depth.max(u32::from(!current.is_empty()));
+        &scratch.sums
+    }
+}
 
-        let mut is_first = true;
-        while !current.is_empty() {
-            // Find what every ray of the generation meets.
-            scene.geometry.intersect_queue(current, hits, query);
-            if std::mem::take(&mut is_first) {
-                for (sample, (task, hit)) in current.iter().zip(hits.iter_mut()).enumerate() {
-                    first_hits(sample, &task.ray, hit);
-                }
+/// What is left to do once the camera rays are in the first queue: generation after generation.
+struct Generations<'t, 'a, 'f, I, O> {
+    tracer: &'t Tracer<'a, I>,
+    scratch: &'t mut Scratch,
+    statistics: &'t mut Statistics,
+    observer: &'t mut O,
+    first_hits: Option<&'f mut dyn FnMut(usize, &Ray, &mut Option<Hit>)>,
+    next_id: u32,
+}
+
+/// All there is to do: camera rays, then generation after generation.
+struct Whole<'c, 't, 'a, 'f, C: ?Sized, I, O> {
+    camera_rays: &'c C,
+    generations: Generations<'t, 'a, 'f, I, O>,
+}
+
+impl<C: CameraRays + ?Sized, I: Integrator, O: Observer> Work for Whole<'_, '_, '_, '_, C, I, O> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { camera_rays, mut generations } = self;
+        L::stage(Begin(camera_rays, &mut generations));
+        let mut first_hits = generations.first_hits.take();
+        while generations.scratch.current.iter().any(|queue| !queue.is_empty()) {
+            L::stage(Intersect(&mut generations));
+            if let Some(first_hits) = first_hits.take() {
+                generations.show_first_hits(first_hits);
             }
+            L::stage(Shade(&mut generations));
+            L::stage(Answer(&mut generations));
+            let Scratch { current, next, .. } = &mut *generations.scratch;
+            std::mem::swap(current, next);
+        }
+    }
+}
 
-            // Shade: local terms, questions to lights, rays of the next generation.
-            next.clear();
-            questions.clear();
-            spawned.clear();
-            spawned.resize(sums.len(), 0);
-            let rules = self.rules;
-            let mut sink =
-                Sink { sums, questions, next, spawned, media, statistics, observer, rules, next_id: &mut next_id };
-            for (task, hit) in current.iter().zip(hits.iter()) {
-                self.integrator.shade(scene, task, hit.as_ref(), &mut sink);
+impl<I: Integrator, O: Observer> Generations<'_, '_, '_, I, O> {
+    /// Makes the camera rays, the first generation, which carry all light.
+    #[inline(always)]
+    fn begin<L: Lanes>(&mut self, camera_rays: &(impl CameraRays + ?Sized)) {
+        let Scratch { current, media, query, .. } = &mut *self.scratch;
+        let scene = self.tracer.scene;
+        let mut before: Option<(Point3, MediumStack)> = None;
+        let mut first = 0;
+        for rows in current[0].rows_mut() {
+            rows.throughput = [[1.0; WIDTH]; 3];
+            let mut split = [0; WIDTH];
+            for at in (0..WIDTH).step_by(L::COUNT) {
+                camera_rays.generate::<L>(first + at, rows, &mut split, at);
             }
+            for lane in 0..WIDTH {
+                let number = (first + lane) as u32;
+                rows.sample[lane] = number;
+                let (band, kind, split) = (None, RayKind::Camera, split[lane]);
+                rows.notes[lane] = RayNotes { id: number, parent: number, split, depth: 1, passes: 0, band, kind };
+                // The rays of a perspective camera share their origin.
+                let origin = Point3::from(column(&rows.origin, lane));
+                rows.media[lane] = match before {
+                    Some((same, media)) if same == origin => media,
+                    _ => scene.media_around(origin, media, query),
+                };
+                before = Some((origin, rows.media[lane]));
+            }
+            first += WIDTH;
+        }
+        if O::WATCHES {
+            for (rows, active) in current[0].rows() {
+                active.lanes().for_each(|lane| self.observer.ray(&rows.task(lane)));
+            }
+        }
+    }
 
-            // Answer the questions and add what arrives.
-            for question in questions.iter() {
-                let transmittance =
-                    shadow::transmittance(scene, rules.shadows, question, media, shadow, query, statistics);
-                observer.shadow(question, transmittance);
-                if transmittance.is_black() {
-                    continue;
+    /// Finds what every ray of the generation meets.
+    #[inline(always)]
+    fn intersect<L: Lanes>(&mut self) {
+        let geometry = &self.tracer.scene.geometry;
+        let Scratch { current, hits, query, .. } = &mut *self.scratch;
+        let mut number = 0;
+        for queue in current {
+            for (rays, active) in queue.rows() {
+                if number == hits.len() {
+                    hits.push(HitRows::NOTHING);
                 }
-                for (term, unblocked) in question.terms {
-                    if !unblocked.is_black() {
-                        let share = unblocked * transmittance;
-                        sums[question.sample as usize] += share;
-                        observer.term(question.task, term, share);
+                for (at, lanes) in parts::<L>(active) {
+                    geometry.intersect_lanes::<L>(rays, at, lanes, &mut hits[number], query);
+                }
+                number += 1;
+            }
+        }
+    }
+
+    /// Shows the hits of camera rays, which are in the first queue alone.
+    fn show_first_hits(&mut self, first_hits: &mut dyn FnMut(usize, &Ray, &mut Option<Hit>)) {
+        let Scratch { current, hits, .. } = &mut *self.scratch;
+        for ((rays, active), hits) in current[0].rows().zip(hits) {
+            for lane in active.lanes() {
+                let mut hit = if hits.met().has(lane) { hits.hit(lane) } else { None };
+                first_hits(rays.sample[lane] as usize, &rays.ray(lane), &mut hit);
+                hits.set(lane, hit);
+            }
+        }
+    }
+
+    /// Shades: local terms, questions to lights, rays of the next generation.
+    #[inline(always)]
+    fn shade<L: Lanes>(&mut self) {
+        let Tracer { scene, integrator, rules, .. } = *self.tracer;
+        let Scratch { current, next, hits, surfaces, questions, sums, spawned, media, .. } = &mut *self.scratch;
+        next.iter_mut().for_each(RayQueue::clear);
+        questions.clear();
+        spawned.clear();
+        spawned.resize(sums.len(), 0);
+        let (statistics, observer) = (&mut *self.statistics, &mut *self.observer);
+        let next_id = &mut self.next_id;
+        let mut sink = Sink { sums, questions, next, spawned, media, statistics, observer, rules, next_id };
+        let mut hits = hits.iter();
+        for (number, queue) in current.iter().enumerate() {
+            for ((rays, active), hits) in queue.rows().zip(&mut hits) {
+                for (at, lanes) in parts::<L>(active) {
+                    let mut rest = lanes;
+                    while rest.any() {
+                        // In the last queue several may belong to one sample.
+                        let together = if number + 1 < QUEUES { rest } else { Bits::lane(rest.lowest()) };
+                        integrator.shade::<L, O>(scene, rays, at, together, hits, surfaces, &mut sink);
+                        rest = rest.without(together);
                     }
                 }
             }
-            std::mem::swap(current, next);
         }
-        sums
+    }
+
+    /// Answers the questions and adds what arrives.
+    #[inline(always)]
+    fn answer<L: Lanes>(&mut self) {
+        let Tracer { scene, rules, .. } = *self.tracer;
+        let Scratch { questions, sums, media, shadow, query, .. } = &mut *self.scratch;
+        for (rows, active) in questions.rows() {
+            for (at, lanes) in parts::<L>(active) {
+                let context = shadow::Context { scene, shadows: rules.shadows, media, query };
+                shadow::answer::<L, O>(context, rows, at, lanes, shadow, sums, self.statistics, self.observer);
+            }
+        }
     }
 }
 
-/// The bodies that a camera ray begins in.
-fn media_at(
-    scene: &CompiledScene,
-    origin: Point3,
-    before: Option<&RayTask>,
-    media: &mut MediumStacks,
-    query: &mut QueryScratch,
-) -> MediumStack {
-    match before {
-        // The rays of a perspective camera share their origin.
-        Some(before) if before.ray.origin == origin => before.media,
-        _ => scene.media_around(origin, media, query),
+/// Rays from the camera, one a sample.
+pub trait CameraRays {
+    /// How many.
+    fn count(&self) -> usize;
+    /// Writes rays from number `first` on to rows from place `at` on, with the numbers of their places to split white light; what
+    /// it writes for numbers beyond the count is not looked at, but finite.
+    fn generate<L: Lanes>(&self, first: usize, rows: &mut RayRows, split: &mut [u32; WIDTH], at: usize);
+}
+
+impl CameraRays for [(Ray, u32)] {
+    fn count(&self) -> usize {
+        self.len()
+    }
+
+    #[inline(always)]
+    fn generate<L: Lanes>(&self, first: usize, rows: &mut RayRows, split: &mut [u32; WIDTH], at: usize) {
+        for lane in 0..L::COUNT {
+            if let Some((ray, number)) = self.get(first + lane).or(self.last()) {
+                set_column(&mut rows.origin, at + lane, ray.origin.to_array());
+                set_column(&mut rows.direction, at + lane, ray.direction.to_array());
+                split[at + lane] = *number;
+            }
+        }
     }
 }
 
-/// A ray from the camera, with all light.
-fn camera_task(ray: Ray, number: u32, split: u32, media: MediumStack) -> RayTask {
-    RayTask {
-        ray,
-        throughput: Rgb::WHITE,
-        sample: number,
-        id: number,
-        parent: number,
-        media,
-        depth: 1,
-        passes: 0,
-        kind: RayKind::Camera,
-        band: None,
-        split,
+/// The steps of a generation, and the one before all, each compiled as a whole for the instructions at hand.
+struct Begin<'c, 'g, C: ?Sized, G>(&'c C, &'g mut G);
+struct Intersect<'g, G>(&'g mut G);
+struct Shade<'g, G>(&'g mut G);
+struct Answer<'g, G>(&'g mut G);
+
+impl<C: CameraRays + ?Sized, I: Integrator, O: Observer> Work for Begin<'_, '_, C, Generations<'_, '_, '_, I, O>> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        self.1.begin::<L>(self.0);
     }
+}
+
+impl<I: Integrator, O: Observer> Work for Intersect<'_, Generations<'_, '_, '_, I, O>> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        self.0.intersect::<L>();
+    }
+}
+
+impl<I: Integrator, O: Observer> Work for Shade<'_, Generations<'_, '_, '_, I, O>> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        self.0.shade::<L>();
+    }
+}
+
+impl<I: Integrator, O: Observer> Work for Answer<'_, Generations<'_, '_, '_, I, O>> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        self.0.answer::<L>();
+    }
+}
+
+/// The places of rows from which on lanes are taken, with those that are active, counted from there.
+#[inline(always)]
+fn parts<L: Lanes>(active: Bits) -> impl Iterator<Item = (usize, Bits)> {
+    (0..WIDTH).step_by(L::COUNT).map(move |at| (at, Bits(active.0 >> at) & L::all())).filter(|(_, lanes)| lanes.any())
 }

@@ -1,5 +1,6 @@
 //! The loop over generations: samples do not know of each other, and watchers see everything.
 
+use snell_math::lanes::InstructionSet;
 use snell_math::{Point3, Ray, Rgb, Vector3};
 use snell_scene::scene::{
     Background, Camera, Dielectric, Falloff, Light, LightKind, Material, Medium, Object, PixelGrid, Scene, Shadows,
@@ -9,6 +10,7 @@ use snell_testkit::{TestRng, must_fail};
 
 use super::{Scratch, Tracer};
 use crate::compile::CompiledScene;
+use crate::geometry::Hit;
 use crate::integrator::{Rules, Whitted};
 use crate::observe::{NoObserver, RayTree};
 use crate::statistics::Statistics;
@@ -58,14 +60,14 @@ fn rays() -> Vec<(Ray, u32)> {
 fn samples_do_not_know_of_each_other() {
     let scene = scene();
     let integrator = integrator(&scene);
-    let tracer = Tracer { scene: &scene, integrator: &integrator, rules: RULES };
+    let tracer = Tracer { scene: &scene, integrator: &integrator, rules: RULES, instructions: InstructionSet::best() };
     let rays = rays();
     let (mut scratch, mut together) = (Scratch::default(), Statistics::default());
-    let all = tracer.trace(rays.iter().copied(), &mut scratch, &mut together, &mut NoObserver, |_, _, _| {}).to_vec();
+    let all = tracer.trace(rays.as_slice(), &mut scratch, &mut together, &mut NoObserver, None).to_vec();
     let (mut each, mut alone) = (Vec::new(), Statistics::default());
     // With queues that others have used, in the other order.
     for &ray in rays.iter().rev() {
-        each.extend_from_slice(tracer.trace([ray], &mut scratch, &mut alone, &mut NoObserver, |_, _, _| {}));
+        each.extend_from_slice(tracer.trace([ray].as_slice(), &mut scratch, &mut alone, &mut NoObserver, None));
     }
     each.reverse();
     assert_eq!(all, each);
@@ -80,16 +82,38 @@ fn samples_do_not_know_of_each_other() {
 }
 
 #[test]
+fn all_instructions_give_the_same_bits() {
+    let scene = scene();
+    let integrator = integrator(&scene);
+    let rays = rays();
+    let trace = |instructions: InstructionSet| {
+        let tracer = Tracer { scene: &scene, integrator: &integrator, rules: RULES, instructions };
+        let (mut scratch, mut statistics) = (Scratch::default(), Statistics::default());
+        let colors = tracer.trace(rays.as_slice(), &mut scratch, &mut statistics, &mut NoObserver, None);
+        (colors.iter().map(|color| color.to_array().map(f32::to_bits)).collect::<Vec<_>>(), statistics)
+    };
+    let alone = trace(InstructionSet::Scalar);
+    for instructions in InstructionSet::available() {
+        assert_eq!(trace(instructions), alone, "{instructions:?}");
+    }
+    must_fail("the last bit of one sample is another", || {
+        let mut other = trace(InstructionSet::best());
+        other.0[11][1] ^= 1;
+        assert_eq!(other, alone);
+    });
+}
+
+#[test]
 fn watchers_change_nothing_and_see_every_ray() {
     let scene = scene();
     let integrator = integrator(&scene);
-    let tracer = Tracer { scene: &scene, integrator: &integrator, rules: RULES };
+    let tracer = Tracer { scene: &scene, integrator: &integrator, rules: RULES, instructions: InstructionSet::best() };
     let mut scratch = Scratch::default();
     for ray in rays() {
         let (mut plain, mut watched) = (Statistics::default(), Statistics::default());
-        let color = tracer.trace([ray], &mut scratch, &mut plain, &mut NoObserver, |_, _, _| {})[0];
+        let color = tracer.trace([ray].as_slice(), &mut scratch, &mut plain, &mut NoObserver, None)[0];
         let mut tree = RayTree::default();
-        let seen = tracer.trace([ray], &mut scratch, &mut watched, &mut tree, |_, _, _| {})[0];
+        let seen = tracer.trace([ray].as_slice(), &mut scratch, &mut watched, &mut tree, None)[0];
         assert_eq!((color, plain), (seen, watched));
         assert_eq!(tree.sum(), color);
         let of_kind =
@@ -112,18 +136,19 @@ fn watchers_change_nothing_and_see_every_ray() {
 fn what_is_taken_from_a_camera_ray_is_not_there() {
     let scene = scene();
     let integrator = integrator(&scene);
-    let tracer = Tracer { scene: &scene, integrator: &integrator, rules: RULES };
+    let tracer = Tracer { scene: &scene, integrator: &integrator, rules: RULES, instructions: InstructionSet::best() };
     let (mut scratch, mut statistics) = (Scratch::default(), Statistics::default());
-    let colors = tracer.trace(rays(), &mut scratch, &mut statistics, &mut NoObserver, |number, _, hit| {
+    let mut take = |number: usize, _: &Ray, hit: &mut Option<Hit>| {
         if number % 2 == 0 {
             *hit = None;
         }
-    });
+    };
+    let colors = tracer.trace(rays().as_slice(), &mut scratch, &mut statistics, &mut NoObserver, Some(&mut take));
     assert!(colors.iter().step_by(2).all(|color| *color == Rgb::new(0.2, 0.4, 0.8)));
     assert!(colors.iter().skip(1).step_by(2).any(|color| *color != Rgb::new(0.2, 0.4, 0.8)));
     // No rays, no samples.
     let mut none = Statistics::default();
-    assert!(tracer.trace([], &mut scratch, &mut none, &mut NoObserver, |_, _, _| {}).is_empty());
+    assert!(tracer.trace([].as_slice(), &mut scratch, &mut none, &mut NoObserver, None).is_empty());
     assert_eq!(none, Statistics::default());
 }
 
@@ -132,9 +157,9 @@ fn rules_of_shadows_and_depth_hold() {
     let scene = scene();
     let integrator = integrator(&scene);
     let counts = |rules: Rules| {
-        let tracer = Tracer { scene: &scene, integrator: &integrator, rules };
+        let tracer = Tracer { scene: &scene, integrator: &integrator, rules, instructions: InstructionSet::best() };
         let (mut scratch, mut statistics) = (Scratch::default(), Statistics::default());
-        let colors = tracer.trace(rays(), &mut scratch, &mut statistics, &mut NoObserver, |_, _, _| {});
+        let colors = tracer.trace(rays().as_slice(), &mut scratch, &mut statistics, &mut NoObserver, None);
         (colors.iter().fold(0.0, |sum, color| sum + color.g), statistics)
     };
     let (filtered, all) = counts(RULES);

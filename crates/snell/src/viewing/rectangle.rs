@@ -3,6 +3,8 @@
 //! A *window* is a rectangle of world coordinates, a *viewport* one of normalized device coordinates, [0, 1]² with y up, and a
 //! *device* has physical coordinates, in whatever unit it counts.
 
+use snell_math::lanes::Lanes;
+
 /// A rectangle with sides along the axes. A map onto it takes `left` to `left` and `bottom` to `bottom`, so one that is turned
 /// over (`bottom` above `top` in numbers, as on a device whose y runs down) is as good as any.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -212,10 +214,16 @@ impl RectangleMap {
     /// Where a point goes.
     #[inline]
     pub fn point(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        self.point_lanes([x, y])
+    }
+
+    /// As [`RectangleMap::point`], side by side.
+    #[inline(always)]
+    pub(crate) fn point_lanes<L: Lanes>(&self, [x, y]: [L; 2]) -> [L; 2] {
         let Self { from, to } = self;
         [
-            to.left + to.width() * ((x - from.left) / from.width()),
-            to.bottom + to.height() * ((y - from.bottom) / from.height()),
+            L::splat(to.left) + L::splat(to.width()) * ((x - L::splat(from.left)) / L::splat(from.width())),
+            L::splat(to.bottom) + L::splat(to.height()) * ((y - L::splat(from.bottom)) / L::splat(from.height())),
         ]
     }
 

@@ -4,6 +4,7 @@ use snell::camera::Camera;
 use snell::compile::CompiledScene;
 use snell::image::Image;
 use snell::integrator::{Rules, Whitted};
+use snell::math::lanes::InstructionSet;
 use snell::math::sampling;
 use snell::math::{Normal3, Point3, Ray, Rgb, Vector3};
 use snell::observe::{RayTree, TracedRay};
@@ -111,9 +112,14 @@ impl Watch<'_> {
     fn shoot(&self, ray: Ray) -> (RayTree, Statistics) {
         let RenderSettings { depth, min_weight, weightless_rays, shadows, .. } = self.stage.settings;
         let rules = Rules { depth, min_weight, weightless_rays, shadows };
-        let tracer = Tracer { scene: &self.stage.scene, integrator: &self.integrator, rules };
+        let tracer = Tracer {
+            scene: &self.stage.scene,
+            integrator: &self.integrator,
+            rules,
+            instructions: InstructionSet::best(),
+        };
         let (mut tree, mut statistics) = (RayTree::default(), Statistics::default());
-        tracer.trace([(ray, 0)], &mut Scratch::default(), &mut statistics, &mut tree, |_, _, _| {});
+        tracer.trace([(ray, 0)].as_slice(), &mut Scratch::default(), &mut statistics, &mut tree, None);
         (tree, statistics)
     }
 }

@@ -1,0 +1,431 @@
+//! Questions of many rays at once: eight side by side.
+//!
+//! Plain spheres and planes that stand in the world as they are, which most rays are tested with, are met by all lanes at once;
+//! everything else by one ray after the other. What is found is what [`Geometry::intersect`] and [`Geometry::gather_blockers`]
+//! find for each ray alone.
+
+use snell_math::lanes::{Bits, LaneVector, Lanes, WIDTH};
+use snell_math::{Point3, Ray, Vector3};
+
+use super::space::{NONE, Primitive};
+use super::{Geometry, Hit, InnerHit, LocalPlace, QueryScratch, TOUCHING, Touching};
+use crate::accel::Candidate;
+use crate::interaction::{SolidId, SurfaceInteraction, SurfaceRows};
+use crate::shape::{LanePlanes, LaneRay, LaneSpheres, SurfacePoint};
+use crate::task::{RayRows, column, set_column};
+
+/// The nearest hits of eight rays.
+#[derive(Clone, Copy, Debug)]
+pub struct HitRows {
+    /// See [`Hit::t`].
+    pub t: [f64; WIDTH],
+    /// The primitive of the world; [`NONE`] where a ray meets nothing.
+    primitive: [u32; WIDTH],
+    inner: [u32; WIDTH],
+    place: [LocalPlace; WIDTH],
+}
+
+impl HitRows {
+    /// No hit in any lane.
+    pub const NOTHING: Self = Self {
+        t: [0.0; WIDTH],
+        primitive: [NONE; WIDTH],
+        inner: [NONE; WIDTH],
+        place: [LocalPlace { part: 0, leaf: 0, flipped: false, entering: false }; WIDTH],
+    };
+
+    /// The lanes that have a hit.
+    #[inline(always)]
+    pub fn met(&self) -> Bits {
+        let mut met = 0;
+        for (lane, primitive) in self.primitive.iter().enumerate() {
+            met |= u8::from(*primitive != NONE) << lane;
+        }
+        Bits(met)
+    }
+
+    /// The hit of one lane.
+    #[inline]
+    pub fn hit(&self, lane: usize) -> Option<Hit> {
+        let (primitive, inner, place) = (self.primitive[lane], self.inner[lane], self.place[lane]);
+        (primitive != NONE).then_some(Hit { t: self.t[lane], primitive, inner, place })
+    }
+
+    /// Sets the hit of one lane.
+    #[inline]
+    pub fn set(&mut self, lane: usize, hit: Option<Hit>) {
+        self.primitive[lane] = NONE;
+        if let Some(Hit { t, primitive, inner, place }) = hit {
+            (self.t[lane], self.primitive[lane], self.inner[lane], self.place[lane]) = (t, primitive, inner, place);
+        }
+    }
+}
+
+/// What is in the way of eight shadow rays.
+#[derive(Debug, Default)]
+pub struct Blockers {
+    /// The lanes in whose way something opaque is.
+    pub blocked: Bits,
+    /// The meetings of the others with transparent surfaces, each with its lane, in no particular order.
+    pub hits: Vec<(u8, Hit)>,
+}
+
+/// The nearest hits that are known so far.
+struct Nearest<L> {
+    /// What hits are compared by, see [`Touching`].
+    key: L,
+    t: L,
+    /// The primitive, as a number; −1 where there is none yet.
+    index: L,
+    /// The lanes whose hit is no simple one: more of it stands in the rows.
+    complex: Bits,
+}
+
+impl<L: Lanes> Nearest<L> {
+    /// Takes over hits of one primitive at `t` where they come before what is known.
+    #[inline(always)]
+    fn take(&mut self, met: Bits, t: L, key: L, index: u32, ties: Bits) {
+        let better = met & (key.lt(self.key) | key.same(self.key) & ties);
+        self.key = key.or_where_not(better, self.key);
+        self.t = t.or_where_not(better, self.t);
+        self.index = L::splat(f64::from(index)).or_where_not(better, self.index);
+        self.complex = self.complex.without(better);
+    }
+
+    /// The lanes that have no hit yet.
+    #[inline(always)]
+    fn without_hit(&self) -> Bits {
+        self.index.lt(L::splat(0.0))
+    }
+}
+
+/// What hits are compared by, see [`Touching::key`].
+#[inline(always)]
+fn key_of<L: Lanes>(t: L, along: L, is_opaque: bool) -> L {
+    if is_opaque { t } else { t + (L::splat(TOUCHING) * t + along) }
+}
+
+/// Reads one lane of a number.
+#[inline(always)]
+fn lane_of<L: Lanes>(number: L, lane: usize) -> f64 {
+    let mut row = [0.0; WIDTH];
+    number.store(&mut row, 0);
+    row[lane]
+}
+
+/// Writes one lane of a number.
+#[inline(always)]
+fn with_lane<L: Lanes>(number: L, lane: usize, value: f64) -> L {
+    L::splat(value).or_where_not(Bits::lane(lane), number)
+}
+
+impl Geometry {
+    /// The nearest hits of rays side by side, from place `at` of the rows on; lanes that are not `active` get none.
+    #[inline(always)]
+    pub(crate) fn intersect_lanes<L: Lanes>(
+        &self,
+        rays: &RayRows,
+        at: usize,
+        active: Bits,
+        hits: &mut HitRows,
+        scratch: &mut QueryScratch,
+    ) {
+        let ray =
+            LaneRay { origin: LaneVector::load(&rays.origin, at), direction: LaneVector::load(&rays.direction, at) };
+        let along = L::splat(TOUCHING) * ray.origin.max_abs();
+        let infinity = L::splat(f64::INFINITY);
+        let mut nearest = Nearest { key: infinity, t: infinity, index: L::splat(-1.0), complex: Bits::NONE };
+        let world = &self.world;
+        // The unbounded ones before the rest, since a floor shortens the way through it.
+        for (primitive, index) in world.primitives[world.first_alone..].iter().zip(world.first_alone as u32..) {
+            let is_opaque = world.attributes[index as usize].is_opaque;
+            let (met, t) = match primitive {
+                Primitive::Sphere(sphere) => LaneSpheres::from(sphere).intersect(&ray, infinity),
+                Primitive::Plane(plane) => LanePlanes::from(plane).intersect(&ray, infinity),
+                _ => {
+                    self.meet_one_by_one(index, is_opaque, rays, at, active, &mut nearest, hits, scratch);
+                    continue;
+                }
+            };
+            let met = met & active;
+            if met.any() {
+                let ties = nearest.without_hit();
+                nearest.take(met, t, key_of(t, along, is_opaque), index, ties);
+            }
+        }
+        if !world.handful.is_empty() {
+            for (primitive, index) in world.primitives[..world.first_alone].iter().zip(0..) {
+                let Primitive::Sphere(sphere) = primitive else { continue };
+                let (met, t) = LaneSpheres::from(sphere).intersect(&ray, infinity);
+                let met = met & active;
+                if met.any() {
+                    let is_opaque = world.attributes[index as usize].is_opaque;
+                    // Of equals the lowest, which is not the one without bounds that was found before.
+                    let ties = nearest.without_hit() | L::splat(f64::from(index)).lt(nearest.index);
+                    nearest.take(met, t, key_of(t, along, is_opaque), index, ties);
+                }
+            }
+        } else if world.first_alone > 0 {
+            self.meet_bounded(rays, at, active, &mut nearest, hits, scratch);
+        }
+
+        let mut index = [0.0; WIDTH];
+        nearest.index.store(&mut index, at);
+        nearest.t.store(&mut hits.t, at);
+        for lane in 0..L::COUNT {
+            // The number −1 becomes NONE: 32 bits, all set.
+            hits.primitive[at + lane] = index[at + lane] as i64 as u32;
+            if !nearest.complex.has(lane) {
+                hits.inner[at + lane] = NONE;
+            }
+        }
+    }
+
+    /// The nearest hits with a primitive that is met by one ray at a time.
+    #[expect(clippy::too_many_arguments, reason = "a private step of the function above")]
+    #[inline(never)]
+    fn meet_one_by_one<L: Lanes>(
+        &self,
+        index: u32,
+        is_opaque: bool,
+        rays: &RayRows,
+        at: usize,
+        active: Bits,
+        nearest: &mut Nearest<L>,
+        hits: &mut HitRows,
+        scratch: &mut QueryScratch,
+    ) {
+        let primitive = &self.world.primitives[index as usize];
+        for lane in active.lanes() {
+            let ray = rays.ray(at + lane);
+            let touching = Touching::along(&ray);
+            let limit = lane_of(nearest.key, lane);
+            let hit = match primitive {
+                Primitive::Instance { prototype, placement, .. } => {
+                    self.intersect_instance(*prototype, *placement, &ray, touching, limit, scratch)
+                }
+                _ => self
+                    .intersect_primitive(&self.world, primitive, &ray, 0.0, limit.next_up(), scratch)
+                    .map(|local| touching.candidate(local, is_opaque)),
+            };
+            if let Some(hit) = hit
+                && (hit.t() < limit || hit.t() == limit && nearest.without_hit().has(lane))
+            {
+                nearest.keep(lane, at, index, hit, hits);
+            }
+        }
+    }
+
+    /// The nearest hits with the primitives of the hierarchy.
+    #[inline(never)]
+    fn meet_bounded<L: Lanes>(
+        &self,
+        rays: &RayRows,
+        at: usize,
+        active: Bits,
+        nearest: &mut Nearest<L>,
+        hits: &mut HitRows,
+        scratch: &mut QueryScratch,
+    ) {
+        for lane in active.lanes() {
+            let ray = rays.ray(at + lane);
+            let touching = Touching::along(&ray);
+            let limit = lane_of(nearest.key, lane);
+            if let Some((index, hit)) =
+                self.world.nearest_bounded(&ray, touching, limit, |primitive, is_opaque, limit| {
+                    self.meet_in_world(primitive, is_opaque, &ray, touching, limit, scratch)
+                })
+            {
+                nearest.keep(lane, at, index, hit, hits);
+            }
+        }
+    }
+
+    /// What is in the way of shadow rays side by side, from place `at` of the rows on, as [`Geometry::gather_blockers`]; where
+    /// `any_blocks`, everything blocks, as in [`Geometry::is_blocked`]. Lanes count from `at`.
+    #[expect(clippy::too_many_arguments, reason = "a ray's parts, and where results go")]
+    #[inline(always)]
+    pub(crate) fn block_lanes<L: Lanes>(
+        &self,
+        ray: &LaneRay<L>,
+        distance: L,
+        active: Bits,
+        any_blocks: bool,
+        single: impl Fn(usize) -> (Ray, f64),
+        blockers: &mut Blockers,
+        scratch: &mut QueryScratch,
+    ) {
+        blockers.blocked = Bits::NONE;
+        blockers.hits.clear();
+        let world = &self.world;
+        let of_handful = if world.handful.is_empty() { 0 } else { world.first_alone };
+        let alone = world.primitives[world.first_alone..].iter().zip(world.first_alone as u32..);
+        for (primitive, index) in alone.chain(world.primitives[..of_handful].iter().zip(0..)) {
+            let open = active.without(blockers.blocked);
+            if open.is_empty() {
+                return;
+            }
+            let is_opaque = any_blocks || world.attributes[index as usize].is_opaque;
+            match primitive {
+                Primitive::Plane(plane) => {
+                    let (met, t) = LanePlanes::from(plane).intersect(ray, distance);
+                    if is_opaque {
+                        blockers.blocked |= met & open;
+                    } else {
+                        blockers.keep(met & open, t, index);
+                    }
+                }
+                Primitive::Sphere(sphere) if is_opaque => {
+                    blockers.blocked |= LaneSpheres::from(sphere).intersect(ray, distance).0 & open;
+                }
+                Primitive::Sphere(sphere) => {
+                    for (met, t) in LaneSpheres::from(sphere).hits_before(ray, distance) {
+                        blockers.keep(met & open, t, index);
+                    }
+                }
+                _ => {
+                    for lane in open.lanes() {
+                        let (ray, distance) = single(lane);
+                        let keep = |hit| blockers.hits.push((lane as u8, hit));
+                        if self.is_blocked_by(index, primitive, &ray, distance, any_blocks, keep, scratch) {
+                            blockers.blocked |= Bits::lane(lane);
+                        }
+                    }
+                }
+            }
+        }
+        if world.handful.is_empty() && world.first_alone > 0 {
+            for lane in active.without(blockers.blocked).lanes() {
+                let (ray, distance) = single(lane);
+                if self.is_blocked_by_bounded(&ray, distance, any_blocks, lane, &mut blockers.hits, scratch) {
+                    blockers.blocked |= Bits::lane(lane);
+                }
+            }
+        }
+    }
+
+    /// As [`Geometry::is_at_origin`], side by side.
+    #[inline(always)]
+    pub(crate) fn are_at_origin<L: Lanes>(origin: LaneVector<L>, t: L) -> Bits {
+        t.le(L::splat(TOUCHING) * origin.max_abs())
+    }
+
+    /// Works out hits of rays side by side, from place `at` of the rows on.
+    #[inline(always)]
+    pub(crate) fn surfaces<L: Lanes>(
+        &self,
+        rays: &RayRows,
+        at: usize,
+        hits: &HitRows,
+        met: Bits,
+        surfaces: &mut SurfaceRows,
+    ) {
+        let ray =
+            LaneRay { origin: LaneVector::load(&rays.origin, at), direction: LaneVector::load(&rays.direction, at) };
+        let t = L::load(&hits.t, at);
+        let (mut spheres, mut planes) = (Bits::NONE, Bits::NONE);
+        let (mut place, mut normal, mut radius) = ([[0.0; WIDTH]; 3], [[0.0; WIDTH]; 3], [1.0; WIDTH]);
+        for lane in met.lanes() {
+            let index = hits.primitive[at + lane];
+            surfaces.whole[at + lane] = None;
+            surfaces.solid[at + lane] = SolidId(u64::from(index) << 32 | u64::from(NONE));
+            let own = self.world.attributes[index as usize].material;
+            surfaces.material[at + lane] = if own == NONE { self.default_material } else { own };
+            match &self.world.primitives[index as usize] {
+                Primitive::Sphere(sphere) => {
+                    spheres |= Bits::lane(lane);
+                    set_column(&mut place, at + lane, sphere.center.to_array());
+                    radius[at + lane] = sphere.radius;
+                }
+                Primitive::Plane(plane) => {
+                    planes |= Bits::lane(lane);
+                    let (point, unit) = plane.point_and_normal();
+                    set_column(&mut place, at + lane, point.to_array());
+                    set_column(&mut normal, at + lane, unit.to_array());
+                }
+                _ => self.surface_one_by_one(&rays.ray(at + lane), hits, at + lane, surfaces),
+            }
+        }
+        if spheres.any() {
+            let lanes = LaneSpheres::<L> { center: LaneVector::load(&place, at), radius: L::load(&radius, at) };
+            let (point, normal, error) = lanes.surface(&ray, t);
+            surfaces.put(at, spheres, point, normal, error);
+        }
+        if planes.any() {
+            let lanes = LanePlanes::<L> { point: LaneVector::load(&place, at), normal: LaneVector::load(&normal, at) };
+            let (point, error) = lanes.surface(&ray, t);
+            surfaces.put(at, planes, point, lanes.normal, error);
+        }
+    }
+
+    #[inline(never)]
+    fn surface_one_by_one(&self, ray: &Ray, hits: &HitRows, lane: usize, surfaces: &mut SurfaceRows) {
+        let Some(hit) = hits.hit(lane) else { return };
+        let whole = self.interaction(ray, &hit);
+        set_column(&mut surfaces.point, lane, whole.point.to_array());
+        set_column(&mut surfaces.geometric_normal, lane, whole.geometric_normal.to_array());
+        set_column(&mut surfaces.shading_normal, lane, whole.shading_normal.to_array());
+        surfaces.error[lane] = whole.error;
+        surfaces.material[lane] = whole.material;
+        surfaces.solid[lane] = whole.solid;
+        surfaces.whole[lane] = Some(whole);
+    }
+
+    /// Everything about one of eight hits.
+    #[inline(never)]
+    pub(crate) fn interaction_of(&self, hits: &HitRows, surfaces: &SurfaceRows, lane: usize) -> SurfaceInteraction {
+        if let Some(whole) = &surfaces.whole[lane] {
+            return *whole;
+        }
+        let surface = SurfacePoint {
+            point: Point3::from(column(&surfaces.point, lane)),
+            error: surfaces.error[lane],
+            geometric_normal: Vector3::from(column(&surfaces.geometric_normal, lane)).into(),
+            shading_normal: Vector3::from(column(&surfaces.shading_normal, lane)).into(),
+            uv: [0.0, 0.0],
+        };
+        let index = hits.primitive[lane];
+        let hit = Hit { t: hits.t[lane], primitive: index, inner: NONE, place: LocalPlace::of_part(0) };
+        self.complete(&self.world, &hit, index, None, surface, None, surfaces.material[lane])
+    }
+}
+
+impl<L: Lanes> Nearest<L> {
+    /// Takes over one lane's hit that is no simple one.
+    fn keep(&mut self, lane: usize, at: usize, index: u32, hit: InnerHit, hits: &mut HitRows) {
+        self.key = with_lane(self.key, lane, hit.key);
+        self.t = with_lane(self.t, lane, hit.local.t);
+        self.index = with_lane(self.index, lane, f64::from(index));
+        self.complex |= Bits::lane(lane);
+        hits.inner[at + lane] = hit.inner;
+        hits.place[at + lane] = hit.local.place;
+    }
+}
+
+impl Blockers {
+    /// Keeps a transparent surface, met at `t` by some lanes.
+    #[inline(always)]
+    fn keep<L: Lanes>(&mut self, met: Bits, t: L, primitive: u32) {
+        if met.any() {
+            let mut row = [0.0; WIDTH];
+            t.store(&mut row, 0);
+            for lane in met.lanes() {
+                let place = LocalPlace::of_part(0);
+                self.hits.push((lane as u8, Hit { t: row[lane], primitive, inner: NONE, place }));
+            }
+        }
+    }
+}
+
+impl SurfaceRows {
+    /// Puts in surfaces of some lanes, whose shading normal is the geometric one.
+    #[inline(always)]
+    fn put<L: Lanes>(&mut self, at: usize, lanes: Bits, point: LaneVector<L>, normal: LaneVector<L>, error: L) {
+        let before = LaneVector::load(&self.point, at);
+        point.or_where_not(lanes, before).store(&mut self.point, at);
+        error.or_where_not(lanes, L::load(&self.error, at)).store(&mut self.error, at);
+        for normals in [&mut self.geometric_normal, &mut self.shading_normal] {
+            normal.or_where_not(lanes, LaneVector::load(normals, at)).store(normals, at);
+        }
+    }
+}
