@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use snell_math::Rgb;
 
 use crate::tone::{ToneCurve, exposure_scale};
-use crate::transfer::Encoder;
+use crate::transfer::{ByteEncoder, Encoder};
 use crate::{Image, transfer};
 
 /// How many bits a component has.
@@ -62,12 +62,20 @@ impl DisplayImage {
     /// ```
     #[must_use]
     pub fn develop(light: &Image<Rgb>, tone: ToneCurve, exposure: f32, depth: BitDepth) -> Self {
-        let scale = exposure_scale(exposure);
-        let encoder = Encoder::new(depth.max_code());
-        let codes = |pixel: &Rgb| tone.apply(*pixel * scale).to_array().map(|linear| encoder.code(linear));
         let samples = match depth {
-            BitDepth::Eight => Samples::Eight(develop_rows(light, |pixel| codes(pixel).map(|code| code as u8))),
-            BitDepth::Sixteen => Samples::Sixteen(develop_rows(light, codes)),
+            BitDepth::Eight => {
+                let developer = Developer::new(tone, exposure);
+                Samples::Eight(develop_rows(light, |row, codes| developer.develop(row, codes)))
+            }
+            BitDepth::Sixteen => {
+                let scale = exposure_scale(exposure);
+                let encoder = Encoder::new(depth.max_code());
+                Samples::Sixteen(develop_rows(light, |row, codes| {
+                    for (pixel, codes) in row.iter().zip(codes.as_chunks_mut().0) {
+                        *codes = tone.apply(*pixel * scale).to_array().map(|linear| encoder.code(linear));
+                    }
+                }))
+            }
         };
         Self { width: light.width(), height: light.height(), samples }
     }
@@ -153,14 +161,58 @@ impl DisplayImage {
     }
 }
 
-fn develop_rows<S: Copy + Default + Send + Sync>(light: &Image<Rgb>, codes: impl Fn(&Rgb) -> [S; 3] + Sync) -> Vec<S> {
-    let width = light.width().max(1) as usize;
-    let mut samples = vec![S::default(); light.pixels().len() * 3];
-    samples.par_chunks_mut(width * 3).zip(light.pixels().par_chunks(width)).for_each(|(out, row)| {
-        for (out, pixel) in out.chunks_exact_mut(3).zip(row) {
-            out.copy_from_slice(&codes(pixel));
+/// Develops scene-linear light straight into 8 bit codes, a stretch of pixels at a time: what [`DisplayImage::develop`] does
+/// for a whole picture.
+///
+/// ```
+/// use snell_image::{Developer, ToneCurve};
+/// use snell_math::Rgb;
+/// let mut codes = [0; 6];
+/// Developer::new(ToneCurve::None, -1.0).develop(&[Rgb::WHITE, Rgb::new(0.0, 2.0, 9.0)], &mut codes);
+/// assert_eq!(codes, [188, 188, 188, 0, 255, 255]);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Developer {
+    tone: ToneCurve,
+    /// The factor before the tone curve.
+    scale: f32,
+    encoder: ByteEncoder,
+}
+
+impl Developer {
+    /// For one tone curve and exposure, in stops.
+    #[must_use]
+    pub fn new(tone: ToneCurve, exposure: f32) -> Self {
+        Self { tone, scale: exposure_scale(exposure), encoder: ByteEncoder::new() }
+    }
+
+    /// Three codes for each pixel, of as many pixels as there is room for.
+    pub fn develop(&self, light: &[Rgb], codes: &mut [u8]) {
+        if self.tone == ToneCurve::None {
+            return self.encoder.encode(bytemuck::cast_slice(light), self.scale, codes);
         }
-    });
+        // In pieces, so that what the tone curve makes of them stays in the nearest cache.
+        let mut toned = [Rgb::BLACK; 64];
+        for (light, codes) in light.chunks(toned.len()).zip(codes.chunks_mut(toned.len() * 3)) {
+            for (toned, pixel) in toned.iter_mut().zip(light) {
+                *toned = self.tone.apply(*pixel * self.scale);
+            }
+            self.encoder.encode(bytemuck::cast_slice(&toned[..light.len()]), 1.0, codes);
+        }
+    }
+}
+
+/// Rows at a time for one thread.
+const ROWS: usize = 16;
+
+fn develop_rows<S: Copy + Default + Send + Sync>(
+    light: &Image<Rgb>,
+    develop: impl Fn(&[Rgb], &mut [S]) + Sync,
+) -> Vec<S> {
+    let pixels = light.width().max(1) as usize * ROWS;
+    let mut samples = vec![S::default(); light.pixels().len() * 3];
+    let rows = samples.par_chunks_mut(pixels * 3).zip(light.pixels().par_chunks(pixels));
+    rows.for_each(|(codes, light)| develop(light, codes));
     samples
 }
 
@@ -185,6 +237,18 @@ mod tests {
         }
         for exposure in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e9] {
             let _ = DisplayImage::develop(&light, ToneCurve::Filmic, exposure, BitDepth::Eight);
+        }
+    }
+
+    #[test]
+    fn every_tone_curve_is_applied_and_encoded_as_the_references_say() {
+        let light: Vec<Rgb> =
+            (0..200).map(|i| Rgb::new(i as f32 / 90.0 - 0.1, f32::NAN, 1.0 / (i as f32 - 30.0))).collect();
+        for tone in [ToneCurve::None, ToneCurve::Reinhard, ToneCurve::Filmic] {
+            let mut codes = vec![7; 600];
+            Developer::new(tone, -0.3).develop(&light, &mut codes);
+            let expected = light.iter().flat_map(|pixel| tone.apply(*pixel * exposure_scale(-0.3)).to_array());
+            assert!(expected.zip(codes).all(|(linear, code)| transfer::code_reference(linear, 255) == code.into()));
         }
     }
 

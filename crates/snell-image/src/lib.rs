@@ -35,7 +35,9 @@ pub mod tone;
 pub mod transfer;
 
 pub use decode::{DecodeError, Format, Limits, Picture, decode, decode_display};
-pub use display::{BitDepth, DisplayImage, Samples};
-pub use encode::{EncodeError, ExrOptions, ExrPrecision, PngEffort, PngOptions, encode_exr, encode_png};
+pub use display::{BitDepth, Developer, DisplayImage, Samples};
+pub use encode::{
+    EncodeError, ExrOptions, ExrPrecision, PngEffort, PngOptions, PngStrip, PngStrips, encode_exr, encode_png,
+};
 pub use image::{Image, Layers, WrongPixelCount};
 pub use tone::ToneCurve;

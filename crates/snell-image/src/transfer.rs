@@ -3,13 +3,17 @@
 //! The reference is [`code_reference`]: the formula of `snell_math::color`, scaled and rounded to nearest. A `pow` for
 //! every component would take a tenth of a small picture's time, so [`Encoder`] interpolates a table of the curve, and
 //! asks the reference only where the interpolated value lies so near to the boundary of two codes that its error could
-//! decide. For 8 bit codes, of which there are few, it keeps the very numbers at which the reference's codes change.
-//! Hence its codes are those of the reference for every `f32`; the tests hold it to that.
+//! decide. For 8 bit codes, of which there are few, there is a table with the very numbers at which the reference's codes
+//! change, see [`bytes`]. Hence its codes are those of the reference for every `f32`; the tests hold it to that.
+
+mod bytes;
 
 use std::sync::LazyLock;
 
 use snell_math::color::{linear_to_srgb, srgb_to_linear};
 use snell_math::portable;
+
+pub use bytes::ByteEncoder;
 
 /// Knots of the table in one octave, as a power of two.
 const KNOTS_LOG2: u32 = 9;
@@ -18,9 +22,6 @@ const FIRST_EXPONENT: i32 = -9;
 const OCTAVES: usize = 9;
 const KNOTS: usize = OCTAVES << KNOTS_LOG2;
 const FRACTION_BITS: u32 = 23 - KNOTS_LOG2;
-/// Pieces of [`STEPS`] in one octave, as a power of two: an octave has 68 codes at most.
-const STEPS_LOG2: u32 = 7;
-const STEP_BITS: u32 = 23 - STEPS_LOG2;
 const FIRST_BITS: u32 = ((127 + FIRST_EXPONENT) as u32) << 23;
 /// Where the formula's straight part ends.
 const STRAIGHT_END: f32 = 0.003_130_8;
@@ -47,16 +48,7 @@ enum Table {
     /// Of the curve at every knot, and how near to the boundary of two codes the interpolated value may decide.
     Curve { knots: &'static [f32], margin: f64 },
     /// Of the 8 bit codes.
-    Steps(&'static [Step]),
-}
-
-/// A piece of the numbers so short that there is at most one boundary between 8 bit codes in it.
-#[derive(Clone, Copy, Debug)]
-struct Step {
-    /// The code where it begins.
-    code: u8,
-    /// The first number that has the next code, whether it is in this piece or beyond.
-    next: f32,
+    Bytes(ByteEncoder),
 }
 
 impl Encoder {
@@ -64,7 +56,7 @@ impl Encoder {
     #[must_use]
     pub fn new(max_code: u16) -> Self {
         let table = if max_code == u16::from(u8::MAX) {
-            Table::Steps(&STEPS)
+            Table::Bytes(ByteEncoder::new())
         } else {
             Table::Curve { knots: &CURVE, margin: ERROR_BOUND * f64::from(max_code) }
         };
@@ -75,24 +67,20 @@ impl Encoder {
     #[inline]
     #[must_use]
     pub fn code(&self, linear: f32) -> u16 {
+        let (knots, margin) = match self.table {
+            Table::Curve { knots, margin } => (knots, margin),
+            Table::Bytes(encoder) => return encoder.code(linear).into(),
+        };
         let max_code = f64::from(self.max_code);
         if linear > STRAIGHT_END && linear < 1.0 {
             let offset = linear.to_bits() - FIRST_BITS;
-            match self.table {
-                Table::Steps(steps) => {
-                    let Step { code, next } = steps[(offset >> STEP_BITS) as usize];
-                    u16::from(code) + u16::from(linear >= next)
-                }
-                Table::Curve { knots, margin } => {
-                    let scaled = f64::from(interpolated(knots, offset)) * max_code + 0.5;
-                    let code = scaled as u16;
-                    let above_boundary = scaled - f64::from(code);
-                    if above_boundary > margin && above_boundary < 1.0 - margin {
-                        code
-                    } else {
-                        code_reference(linear, self.max_code)
-                    }
-                }
+            let scaled = f64::from(interpolated(knots, offset)) * max_code + 0.5;
+            let code = scaled as u16;
+            let above_boundary = scaled - f64::from(code);
+            if above_boundary > margin && above_boundary < 1.0 - margin {
+                code
+            } else {
+                code_reference(linear, self.max_code)
             }
         } else if linear >= 1.0 {
             self.max_code
@@ -120,33 +108,6 @@ static CURVE: LazyLock<Vec<f32>> = LazyLock::new(|| {
         .map(|knot| {
             let linear = f64::from(f32::from_bits(FIRST_BITS + (knot << FRACTION_BITS)));
             (1.055 * portable::pow(linear, 1.0 / 2.4) - 0.055) as f32
-        })
-        .collect()
-});
-
-/// The pieces from the first octave to one.
-static STEPS: LazyLock<Vec<Step>> = LazyLock::new(|| {
-    let byte = |linear| code_reference(linear, u16::from(u8::MAX)) as u8;
-    // The first number of each code, found from near where the inverse of the formula has it.
-    let first_of = |code: u8| {
-        let mut first = srgb_to_linear((f32::from(code) - 0.5) / f32::from(u8::MAX));
-        while byte(first) < code {
-            first = first.next_up();
-        }
-        while byte(first.next_down()) >= code {
-            first = first.next_down();
-        }
-        first
-    };
-    let mut code = byte(f32::from_bits(FIRST_BITS));
-    let mut next = first_of(code + 1);
-    (0..(OCTAVES as u32) << STEPS_LOG2)
-        .map(|step| {
-            while next <= f32::from_bits(FIRST_BITS + (step << STEP_BITS)) {
-                code += 1;
-                next = if code < u8::MAX { first_of(code + 1) } else { f32::INFINITY };
-            }
-            Step { code, next }
         })
         .collect()
 });

@@ -2,6 +2,8 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub};
 
+use bytemuck::{Pod, Zeroable};
+
 use crate::portable;
 
 /// A scene-linear colour: radiance, reflectance, transmittance or throughput, by context. Components may be negative
@@ -11,7 +13,7 @@ use crate::portable;
 /// use snell_math::Rgb;
 /// assert_eq!(Rgb::gray(0.5) * Rgb::new(1.0, 0.5, 0.0), Rgb::new(0.5, 0.25, 0.0));
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Default, Pod, Zeroable)]
 #[repr(C)]
 pub struct Rgb {
     /// Red.
