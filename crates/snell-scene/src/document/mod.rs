@@ -85,6 +85,11 @@ fn read(
         diagnostics.push(Diagnostic::error("the file is not UTF-8 text").at(span, "from here on"));
         return None;
     }
+    if text.len().max(overrides.iter().map(String::len).max().unwrap_or(0)) > tree::Place::LONGEST {
+        let message = format!("the text is longer than {} bytes", tree::Place::LONGEST);
+        diagnostics.push(Diagnostic::error(message).help("write meshes as files of their own"));
+        return None;
+    }
     let is_json = name.get(name.len().saturating_sub(5)..).is_some_and(|end| end.eq_ignore_ascii_case(".json"));
     let parsed =
         if is_json { json::document(&text, source, diagnostics) } else { parse::document(&text, source, diagnostics) };
@@ -95,7 +100,7 @@ fn read(
         return None;
     }
     check::check(&mut root, &schema(), diagnostics);
-    match model::Document::deserialize(&root) {
+    match model::Document::deserialize(root) {
         Ok(document) => Some(resolve::resolve(&document, name, assets, diagnostics)),
         Err(mismatch) => {
             diagnostics.push(Diagnostic::error(format!("the scene cannot be read: {mismatch}")));
