@@ -9,6 +9,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 use toml_parser::lexer::TokenKind;
 
+use super::plain;
 use super::tree::{Key, Node, Place, Value};
 use crate::diagnostic::{Diagnostic, Diagnostics, SourceId, Span};
 
@@ -22,6 +23,11 @@ pub(in crate::document) fn document<'t>(
     source: SourceId,
     diagnostics: &mut Diagnostics,
 ) -> Option<Node<'t>> {
+    plain::document(text, source).or_else(|| by_toml(text, source, diagnostics))
+}
+
+/// The same by the crate `toml`, which knows all of the language and every mistake.
+pub(super) fn by_toml<'t>(text: &'t str, source: SourceId, diagnostics: &mut Diagnostics) -> Option<Node<'t>> {
     if let Some(range) = too_deep(text) {
         diagnostics.push(nesting_error(Span { source, range }));
         return None;
