@@ -1,11 +1,14 @@
 //! From a [`Node`] tree into the model, through serde, with places for [`super::model::Located`].
+//!
+//! The tree is used up on the way, so that a large scene is never in memory twice.
 
-use serde::de::value::{MapDeserializer, SeqDeserializer, StringDeserializer};
+use std::borrow::Cow;
+
+use serde::de::value::{CowStrDeserializer, MapDeserializer, SeqDeserializer};
 use serde::de::{self, DeserializeSeed, Deserializer, IntoDeserializer, SeqAccess, Visitor};
 
 use super::model::LOCATED;
-use super::tree::{Key, Node, Value};
-use crate::diagnostic::Span;
+use super::tree::{Key, Node, Place, Value};
 
 /// Why a tree does not fit the model; the checks against the schema come before and leave no reason.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -18,31 +21,31 @@ impl de::Error for Mismatch {
     }
 }
 
-impl<'de> IntoDeserializer<'de, Mismatch> for &'de Node {
+impl<'de> IntoDeserializer<'de, Mismatch> for Node<'_> {
     type Deserializer = Self;
     fn into_deserializer(self) -> Self {
         self
     }
 }
 
-impl<'de> Deserializer<'de> for &'de Node {
+impl<'de> Deserializer<'de> for Node<'_> {
     type Error = Mismatch;
 
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Mismatch> {
-        match &self.value {
-            Value::Boolean(truth) => visitor.visit_bool(*truth),
-            Value::Integer(number) => visitor.visit_i64(*number),
-            Value::Float(number) => visitor.visit_f64(*number),
-            Value::Text(text) => visitor.visit_str(text),
+        match self.value {
+            Value::Boolean(truth) => visitor.visit_bool(truth),
+            Value::Integer(number) => visitor.visit_i64(number),
+            Value::Float(number) => visitor.visit_f64(number),
+            Value::Text(text) => visit_text(text, visitor),
             Value::Other(name) => Err(de::Error::custom(format_args!("unexpected {name}"))),
             Value::List(items) => {
-                let mut list = SeqDeserializer::new(items.iter());
+                let mut list = SeqDeserializer::new(items.into_iter());
                 let value = visitor.visit_seq(&mut list)?;
                 list.end()?;
                 Ok(value)
             }
             Value::Table(entries) => {
-                let mut map = MapDeserializer::new(entries.iter().map(|(key, node)| (key, node)));
+                let mut map = MapDeserializer::new(entries.into_iter());
                 let value = visitor.visit_map(&mut map)?;
                 map.end()?;
                 Ok(value)
@@ -64,7 +67,7 @@ impl<'de> Deserializer<'de> for &'de Node {
         _: usize,
         visitor: V,
     ) -> Result<V::Value, Mismatch> {
-        if name == LOCATED { visitor.visit_seq(Place::new(&self.span, self)) } else { self.deserialize_any(visitor) }
+        if name == LOCATED { visitor.visit_seq(Parts::new(self.place, self)) } else { self.deserialize_any(visitor) }
     }
 
     fn deserialize_enum<V: Visitor<'de>>(
@@ -73,8 +76,8 @@ impl<'de> Deserializer<'de> for &'de Node {
         _: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Mismatch> {
-        match &self.value {
-            Value::Text(word) => visitor.visit_enum(word.as_str().into_deserializer()),
+        match self.value {
+            Value::Text(word) => visitor.visit_enum(word.into_deserializer()),
             _ => Err(de::Error::custom("expected a word")),
         }
     }
@@ -85,18 +88,18 @@ impl<'de> Deserializer<'de> for &'de Node {
     }
 }
 
-impl<'de> IntoDeserializer<'de, Mismatch> for &'de Key {
+impl<'de> IntoDeserializer<'de, Mismatch> for Key<'_> {
     type Deserializer = Self;
     fn into_deserializer(self) -> Self {
         self
     }
 }
 
-impl<'de> Deserializer<'de> for &'de Key {
+impl<'de> Deserializer<'de> for Key<'_> {
     type Error = Mismatch;
 
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Mismatch> {
-        visitor.visit_str(&self.name)
+        visit_text(self.name, visitor)
     }
 
     fn deserialize_tuple_struct<V: Visitor<'de>>(
@@ -105,7 +108,7 @@ impl<'de> Deserializer<'de> for &'de Key {
         _: usize,
         visitor: V,
     ) -> Result<V::Value, Mismatch> {
-        visitor.visit_seq(Place::new(&self.span, StringDeserializer::new(self.name.clone())))
+        visitor.visit_seq(Parts::new(self.place, CowStrDeserializer::new(self.name)))
     }
 
     serde::forward_to_deserialize_any! {
@@ -114,20 +117,27 @@ impl<'de> Deserializer<'de> for &'de Key {
     }
 }
 
+fn visit_text<'de, V: Visitor<'de>>(text: Cow<'_, str>, visitor: V) -> Result<V::Value, Mismatch> {
+    match text {
+        Cow::Borrowed(text) => visitor.visit_str(text),
+        Cow::Owned(text) => visitor.visit_string(text),
+    }
+}
+
 /// The four values that [`super::model::Located`] asks for: source, start, end, value.
-struct Place<D> {
-    numbers: std::array::IntoIter<u64, 3>,
+struct Parts<D> {
+    numbers: std::array::IntoIter<u32, 3>,
     value: Option<D>,
 }
 
-impl<D> Place<D> {
-    fn new(span: &Span, value: D) -> Self {
-        let numbers = [u64::from(span.source.0), span.range.start as u64, span.range.end as u64];
+impl<D> Parts<D> {
+    fn new(place: Place, value: D) -> Self {
+        let numbers = [place.source.0, place.start, place.end];
         Self { numbers: numbers.into_iter(), value: Some(value) }
     }
 }
 
-impl<'de, D: Deserializer<'de, Error = Mismatch>> SeqAccess<'de> for Place<D> {
+impl<'de, D: Deserializer<'de, Error = Mismatch>> SeqAccess<'de> for Parts<D> {
     type Error = Mismatch;
 
     fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, Mismatch> {

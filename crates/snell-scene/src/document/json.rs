@@ -2,12 +2,18 @@
 //!
 //! serde_json gives no places of values, hence this small parser. It recurses, and refuses to go deeper than the limit.
 
+use std::borrow::Cow;
+
 use super::parse::MAX_NESTING;
-use super::tree::{Key, Node, Value};
+use super::tree::{Key, Node, Place, Value};
 use crate::diagnostic::{Diagnostic, Diagnostics, SourceId, Span};
 
 /// The object that a whole file is; `None` where the syntax is wrong, which is then told.
-pub(in crate::document) fn document(text: &str, source: SourceId, diagnostics: &mut Diagnostics) -> Option<Node> {
+pub(in crate::document) fn document<'t>(
+    text: &'t str,
+    source: SourceId,
+    diagnostics: &mut Diagnostics,
+) -> Option<Node<'t>> {
     let mut parser = Parser { text, at: 0, source };
     let parsed = parser.value(1).and_then(|node| {
         parser.space();
@@ -17,7 +23,7 @@ pub(in crate::document) fn document(text: &str, source: SourceId, diagnostics: &
         Ok(node) if matches!(node.value, Value::Table(_)) => Some(node),
         Ok(node) => {
             let called = node.called();
-            diagnostics.push(Diagnostic::error(format!("a scene is a table, not {called}")).at(node.span, ""));
+            diagnostics.push(Diagnostic::error(format!("a scene is a table, not {called}")).at(node.place.span(), ""));
             None
         }
         Err(diagnostic) => {
@@ -35,7 +41,7 @@ struct Parser<'a> {
 
 type Parsed<T> = Result<T, Box<Diagnostic>>;
 
-impl Parser<'_> {
+impl<'t> Parser<'t> {
     fn wrong(&self, expected: &str, length: usize) -> Box<Diagnostic> {
         let end = self.text.len().min(self.at + length);
         let range = self.at..self.text.ceil_char_boundary(end);
@@ -43,11 +49,11 @@ impl Parser<'_> {
         Box::new(diagnostic.at(Span { source: self.source, range }, ""))
     }
 
-    fn span(&self, start: usize) -> Span {
-        Span { source: self.source, range: start..self.at }
+    fn place(&self, start: usize) -> Place {
+        Place::new(self.source, start..self.at)
     }
 
-    fn rest(&self) -> &str {
+    fn rest(&self) -> &'t str {
         &self.text[self.at..]
     }
 
@@ -64,7 +70,7 @@ impl Parser<'_> {
         taken
     }
 
-    fn value(&mut self, depth: usize) -> Parsed<Node> {
+    fn value(&mut self, depth: usize) -> Parsed<Node<'t>> {
         self.space();
         if depth > MAX_NESTING {
             return Err(self.wrong(&format!("tables and lists stand more than {MAX_NESTING} deep in each other"), 1));
@@ -84,10 +90,10 @@ impl Parser<'_> {
                 value
             }
         };
-        Ok(Node { span: self.span(start), value })
+        Ok(Node { place: self.place(start), value })
     }
 
-    fn list(&mut self, depth: usize) -> Parsed<Value> {
+    fn list(&mut self, depth: usize) -> Parsed<Value<'t>> {
         self.take('[');
         let mut items = Vec::new();
         if self.take(']') {
@@ -104,9 +110,9 @@ impl Parser<'_> {
         }
     }
 
-    fn table(&mut self, depth: usize) -> Parsed<Value> {
+    fn table(&mut self, depth: usize) -> Parsed<Value<'t>> {
         self.take('{');
-        let mut entries: Vec<(Key, Node)> = Vec::new();
+        let mut entries: Vec<(Key<'t>, Node<'t>)> = Vec::new();
         let mut names = std::collections::BTreeSet::new();
         if self.take('}') {
             return Ok(Value::Table(entries));
@@ -117,10 +123,10 @@ impl Parser<'_> {
             if !self.rest().starts_with('"') {
                 return Err(self.wrong("expected a key in quotes", 1));
             }
-            let key = Key { name: self.string()?, span: self.span(start) };
+            let key = Key { name: self.string()?, place: self.place(start) };
             if !names.insert(key.name.clone()) {
                 let diagnostic = Diagnostic::error(format!("`{}` is defined twice", key.name));
-                return Err(Box::new(diagnostic.at(key.span, "")));
+                return Err(Box::new(diagnostic.at(key.place.span(), "")));
             }
             if !self.take(':') {
                 return Err(self.wrong("expected `:`", 1));
@@ -137,7 +143,7 @@ impl Parser<'_> {
     }
 
     /// A string, decoded by serde_json once its end is found.
-    fn string(&mut self) -> Parsed<String> {
+    fn string(&mut self) -> Parsed<Cow<'t, str>> {
         let mut escaped = false;
         let end = self.rest().bytes().enumerate().skip(1).find_map(|(i, byte)| {
             let ends = byte == b'"' && !escaped;
@@ -145,14 +151,20 @@ impl Parser<'_> {
             ends.then_some(i + 1)
         });
         let Some(end) = end else { return Err(self.wrong("the text is not closed", 1)) };
-        let Ok(text) = serde_json::from_str(&self.rest()[..end]) else {
-            return Err(self.wrong("the text is not well-formed", end));
+        let written = &self.rest()[..end];
+        // Without escapes, the text is what stands in the file.
+        let text = match serde_json::from_str::<&str>(written) {
+            Ok(text) => Cow::Borrowed(text),
+            Err(_) => match serde_json::from_str(written) {
+                Ok(text) => Cow::Owned(text),
+                Err(_) => return Err(self.wrong("the text is not well-formed", end)),
+            },
         };
         self.at += end;
         Ok(text)
     }
 
-    fn number(&mut self) -> Parsed<Value> {
+    fn number(&mut self) -> Parsed<Value<'t>> {
         let rest = self.rest();
         let end = rest.find(|c: char| !matches!(c, '-' | '+' | '.' | 'e' | 'E' | '0'..='9')).unwrap_or(rest.len());
         let text = &rest[..end];

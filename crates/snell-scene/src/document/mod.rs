@@ -1,7 +1,7 @@
 //! Our own scene format, TOML or JSON: one model ([`model`]) drives the reader, the published schema, the reference
 //! `docs/scene-format.md` and the completions of `--set`.
 //!
-//! Reading goes: text → `tree` of values with places (`parse`, `json`) → `--set` (`overrides`) → mistakes of form, all
+//! Reading goes: text → `tree` of values with places (`plain`, `parse`, `json`) → `--set` (`overrides`) → mistakes of form, all
 //! of them, against the schema (`check`) → the model through serde (`deserialize`) → mistakes of meaning, all of them, and
 //! the [`Scene`] (`resolve`). What has mistakes of form is left out, so that the rest is still examined for meaning.
 
@@ -13,6 +13,7 @@ mod keys;
 pub mod model;
 mod overrides;
 mod parse;
+mod plain;
 mod reference;
 mod resolve;
 mod schema;
@@ -77,26 +78,34 @@ fn read(
     overrides: &[String],
     diagnostics: &mut Diagnostics,
 ) -> Option<Scene> {
-    let text = String::from_utf8_lossy(bytes);
-    let source = diagnostics.sources.add(name, text.as_ref());
-    if let Err(error) = std::str::from_utf8(bytes) {
-        let at = error.valid_up_to();
-        let span = crate::diagnostic::Span { source, range: at..at + '\u{fffd}'.len_utf8() };
-        diagnostics.push(Diagnostic::error("the file is not UTF-8 text").at(span, "from here on"));
+    let text = match std::str::from_utf8(bytes) {
+        Ok(text) => text,
+        Err(error) => {
+            let source = diagnostics.sources.add(name, String::from_utf8_lossy(bytes));
+            let at = error.valid_up_to();
+            let span = crate::diagnostic::Span { source, range: at..at + '\u{fffd}'.len_utf8() };
+            diagnostics.push(Diagnostic::error("the file is not UTF-8 text").at(span, "from here on"));
+            return None;
+        }
+    };
+    let source = diagnostics.sources.add(name, text);
+    if text.len().max(overrides.iter().map(String::len).max().unwrap_or(0)) > tree::Place::LONGEST {
+        let message = format!("the text is longer than {} bytes", tree::Place::LONGEST);
+        diagnostics.push(Diagnostic::error(message).help("write meshes as files of their own"));
         return None;
     }
     let is_json = name.get(name.len().saturating_sub(5)..).is_some_and(|end| end.eq_ignore_ascii_case(".json"));
     let parsed =
-        if is_json { json::document(&text, source, diagnostics) } else { parse::document(&text, source, diagnostics) };
+        if is_json { json::document(text, source, diagnostics) } else { parse::document(text, source, diagnostics) };
     let mut root = parsed?;
     overrides::apply(&mut root, overrides, diagnostics);
-    if root.depth() > parse::MAX_NESTING {
+    if !overrides.is_empty() && root.depth() > parse::MAX_NESTING {
         diagnostics.push(Diagnostic::error("the scene is nested too deeply with what `--set` puts into it"));
         return None;
     }
     check::check(&mut root, &schema(), diagnostics);
-    match model::Document::deserialize(&root) {
-        Ok(document) => Some(resolve::resolve(&document, name, assets, diagnostics)),
+    match model::Document::deserialize(root) {
+        Ok(document) => Some(resolve::resolve(document, name, assets, diagnostics)),
         Err(mismatch) => {
             diagnostics.push(Diagnostic::error(format!("the scene cannot be read: {mismatch}")));
             None

@@ -4,14 +4,14 @@
 //! VALUE is a TOML value; what is none and looks like bare words is a text.
 
 use super::parse;
-use super::tree::{Key, Node, Value};
+use super::tree::{Key, Node, Place, Value};
 use crate::diagnostic::{Diagnostic, Diagnostics, SourceId, Span, did_you_mean};
 
 /// The name under which diagnostics know the options.
 const SOURCE_NAME: &str = "--set";
 
 /// Puts the overrides into the tree, in their order.
-pub(in crate::document) fn apply(root: &mut Node, overrides: &[String], diagnostics: &mut Diagnostics) {
+pub(in crate::document) fn apply<'t>(root: &mut Node<'t>, overrides: &'t [String], diagnostics: &mut Diagnostics) {
     for text in overrides {
         let source = diagnostics.sources.add(SOURCE_NAME, text.as_str());
         match parse_override(text, source) {
@@ -26,7 +26,7 @@ pub(in crate::document) fn apply(root: &mut Node, overrides: &[String], diagnost
 }
 
 /// The keys on the way and the value.
-fn parse_override(text: &str, source: SourceId) -> Result<(Vec<Key>, Node), Vec<Diagnostic>> {
+fn parse_override(text: &str, source: SourceId) -> Result<(Vec<Key<'_>>, Node<'_>), Vec<Diagnostic>> {
     let whole = Span { source, range: 0..text.len() };
     let wrong = |message: &str, span: Span| {
         vec![Diagnostic::error(message).at(span, "").help("write KEY=VALUE, such as camera.fov=30")]
@@ -35,7 +35,7 @@ fn parse_override(text: &str, source: SourceId) -> Result<(Vec<Key>, Node), Vec<
     let mut at = 0;
     loop {
         let key = next_key(text, at, source).map_err(|span| wrong("a key is missing or not closed", span))?;
-        at = key.span.range.end;
+        at = key.place.end as usize;
         keys.push(key);
         if keys.len() > parse::MAX_NESTING {
             return Err(wrong("too many keys", whole));
@@ -56,7 +56,7 @@ fn parse_override(text: &str, source: SourceId) -> Result<(Vec<Key>, Node), Vec<
 }
 
 /// The key that begins at or after a place: bare, or in quotes.
-fn next_key(text: &str, at: usize, source: SourceId) -> Result<Key, Span> {
+fn next_key(text: &str, at: usize, source: SourceId) -> Result<Key<'_>, Span> {
     let rest = &text[at..];
     let start = at + (rest.len() - rest.trim_start().len());
     let rest = &text[start..];
@@ -75,25 +75,25 @@ fn next_key(text: &str, at: usize, source: SourceId) -> Result<Key, Span> {
     if length == 0 || end > text.len() {
         return Err(Span { source, range: start..text.len() });
     }
-    Ok(Key { name: name.to_owned(), span: Span { source, range: start..end } })
+    Ok(Key { name: name.into(), place: Place::new(source, start..end) })
 }
 
-fn parse_value(text: &str, at: usize, source: SourceId) -> Result<Node, Vec<Diagnostic>> {
+fn parse_value(text: &str, at: usize, source: SourceId) -> Result<Node<'_>, Vec<Diagnostic>> {
     let rest = &text[at..];
     let start = at + (rest.len() - rest.trim_start().len());
     let word = text[start..].trim_end();
-    let span = Span { source, range: start..start + word.len() };
-    let trimmed = &text[..span.range.end];
+    let place = Place::new(source, start..start + word.len());
+    let trimmed = &text[..place.end as usize];
     parse::value(trimmed, start, source).or_else(|errors| {
         let syntax = |c: char| matches!(c, '"' | '\'' | '[' | ']' | '{' | '}' | '=') || c.is_control();
         let bare = word.starts_with(|c: char| c.is_alphabetic() || matches!(c, '#' | '.' | '/' | '_'))
             && !word.contains(syntax);
-        if bare { Ok(Node { span, value: Value::Text(word.to_owned()) }) } else { Err(errors) }
+        if bare { Ok(Node { place, value: Value::Text(word.into()) }) } else { Err(errors) }
     })
 }
 
 /// Puts a value where the keys lead, and makes the tables on the way.
-fn put(root: &mut Node, keys: &[Key], value: Node) -> Result<(), Box<Diagnostic>> {
+fn put<'t>(root: &mut Node<'t>, keys: &[Key<'t>], value: Node<'t>) -> Result<(), Box<Diagnostic>> {
     let Some((last, way)) = keys.split_last() else { return Ok(()) };
     let mut node = root;
     for (depth, key) in way.iter().enumerate() {
@@ -107,12 +107,12 @@ fn put(root: &mut Node, keys: &[Key], value: Node) -> Result<(), Box<Diagnostic>
             Value::Table(entries) => {
                 let index = match entries.iter().position(|(k, _)| k.name == key.name) {
                     Some(index) => index,
-                    None if depth == 0 && matches!(key.name.as_str(), "object" | "light") => {
+                    None if depth == 0 && matches!(&*key.name, "object" | "light") => {
                         let diagnostic = Diagnostic::error(format!("the scene has no {}s to set", key.name));
-                        return Err(Box::new(diagnostic.at(key.span.clone(), "there is none")));
+                        return Err(Box::new(diagnostic.at(key.place.span(), "there is none")));
                     }
                     None => {
-                        let table = Node { span: key.span.clone(), value: Value::Table(Vec::new()) };
+                        let table = Node { place: key.place, value: Value::Table(Vec::new()) };
                         entries.push((key.clone(), table));
                         entries.len() - 1
                     }
@@ -138,16 +138,16 @@ fn put(root: &mut Node, keys: &[Key], value: Node) -> Result<(), Box<Diagnostic>
 }
 
 /// Makes a table of a value that has no parts, such as a colour that becomes a texture.
-fn make_container(node: &mut Node, key: &Key) {
+fn make_container(node: &mut Node<'_>, key: &Key<'_>) {
     if !matches!(node.value, Value::List(_) | Value::Table(_)) {
-        *node = Node { span: key.span.clone(), value: Value::Table(Vec::new()) };
+        *node = Node { place: key.place, value: Value::Table(Vec::new()) };
     }
 }
 
 /// The item of a list that a key means: by index from 0, or by its `name`.
-fn find(items: &[Node], key: &Key, place: &str) -> Result<usize, Box<Diagnostic>> {
+fn find(items: &[Node<'_>], key: &Key<'_>, place: &str) -> Result<usize, Box<Diagnostic>> {
     let names = || items.iter().map(|item| item.get("name").and_then(Node::text));
-    if let Some(index) = names().position(|name| name == Some(&key.name)) {
+    if let Some(index) = names().position(|name| name == Some(&*key.name)) {
         return Ok(index);
     }
     if let Ok(index) = key.name.parse::<usize>()
@@ -156,7 +156,7 @@ fn find(items: &[Node], key: &Key, place: &str) -> Result<usize, Box<Diagnostic>
         return Ok(index);
     }
     let diagnostic = Diagnostic::error(format!("`{place}` has nothing called {:?}", key.name))
-        .at(key.span.clone(), "neither an index nor a name in it");
+        .at(key.place.span(), "neither an index nor a name in it");
     Err(Box::new(match (did_you_mean(&key.name, names().flatten()), items.len()) {
         (Some(name), _) => diagnostic.help(format!("did you mean {name:?}?")),
         (None, 0) => diagnostic.help("the list is empty"),
@@ -165,7 +165,7 @@ fn find(items: &[Node], key: &Key, place: &str) -> Result<usize, Box<Diagnostic>
     }))
 }
 
-fn path(keys: &[Key]) -> String {
+fn path(keys: &[Key<'_>]) -> String {
     keys.iter().map(|key| key_text(&key.name)).collect::<Vec<_>>().join(".")
 }
 

@@ -9,7 +9,8 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 use toml_parser::lexer::TokenKind;
 
-use super::tree::{Key, Node, Value};
+use super::plain;
+use super::tree::{Key, Node, Place, Value};
 use crate::diagnostic::{Diagnostic, Diagnostics, SourceId, Span};
 
 /// How many tables and lists may stand within each other: enough for a hundred nested solids, and little enough for the
@@ -17,7 +18,16 @@ use crate::diagnostic::{Diagnostic, Diagnostics, SourceId, Span};
 pub(in crate::document) const MAX_NESTING: usize = 210;
 
 /// The table that a whole file is; `None` where the syntax is wrong, which is then told.
-pub(in crate::document) fn document(text: &str, source: SourceId, diagnostics: &mut Diagnostics) -> Option<Node> {
+pub(in crate::document) fn document<'t>(
+    text: &'t str,
+    source: SourceId,
+    diagnostics: &mut Diagnostics,
+) -> Option<Node<'t>> {
+    plain::document(text, source).or_else(|| by_toml(text, source, diagnostics))
+}
+
+/// The same by the crate `toml`, which knows all of the language and every mistake.
+pub(super) fn by_toml<'t>(text: &'t str, source: SourceId, diagnostics: &mut Diagnostics) -> Option<Node<'t>> {
     if let Some(range) = too_deep(text) {
         diagnostics.push(nesting_error(Span { source, range }));
         return None;
@@ -30,14 +40,14 @@ pub(in crate::document) fn document(text: &str, source: SourceId, diagnostics: &
             diagnostics.push(nesting_error(span));
             return None;
         }
-        return Some(Node { span: Span { source, range: 0..0 }, value });
+        return Some(Node { place: Place::new(source, 0..0), value });
     }
     report(errors, text, source, 0, diagnostics);
     None
 }
 
 /// A single value that stands in `text` from `offset` on, for `--set`; or the syntax errors.
-pub(in crate::document) fn value(text: &str, offset: usize, source: SourceId) -> Result<Node, Vec<Diagnostic>> {
+pub(in crate::document) fn value(text: &str, offset: usize, source: SourceId) -> Result<Node<'_>, Vec<Diagnostic>> {
     let rest = &text[offset..];
     if let Some(range) = too_deep(rest) {
         return Err(vec![nesting_error(Span { source, range: range.start + offset..range.end + offset })]);
@@ -116,18 +126,15 @@ fn too_deep(text: &str) -> Option<Range<usize>> {
     None
 }
 
-fn shifted(mut node: Node, offset: usize) -> Node {
-    let shift = |span: &mut Span| span.range = span.range.start + offset..span.range.end + offset;
-    shift(&mut node.span);
+fn shifted(mut node: Node<'_>, offset: usize) -> Node<'_> {
+    let shift = |place: Place| Place::new(place.source, place.start as usize + offset..place.end as usize + offset);
+    node.place = shift(node.place);
     node.value = match node.value {
         Value::List(items) => Value::List(items.into_iter().map(|item| shifted(item, offset)).collect()),
         Value::Table(entries) => Value::Table(
             entries
                 .into_iter()
-                .map(|(mut key, item)| {
-                    shift(&mut key.span);
-                    (key, shifted(item, offset))
-                })
+                .map(|(key, item)| (Key { place: shift(key.place), ..key }, shifted(item, offset)))
                 .collect(),
         ),
         scalar => scalar,
@@ -143,14 +150,14 @@ struct Builder {
 }
 
 impl Builder {
-    fn node(&mut self, value: Spanned<DeValue<'_>>, depth: usize) -> Node {
-        let span = Span { source: self.source, range: value.span() };
+    fn node<'t>(&mut self, value: Spanned<DeValue<'t>>, depth: usize) -> Node<'t> {
+        let place = Place::new(self.source, value.span());
         if depth > MAX_NESTING {
-            self.too_deep.get_or_insert(span.clone());
-            return Node { span, value: Value::Other("a value that is nested too deeply") };
+            self.too_deep.get_or_insert(place.span());
+            return Node { place, value: Value::Other("a value that is nested too deeply") };
         }
         let value = match value.into_inner() {
-            DeValue::String(text) => Value::Text(text.into_owned()),
+            DeValue::String(text) => Value::Text(text),
             DeValue::Integer(number) => match i64::from_str_radix(number.as_str(), number.radix()) {
                 Ok(integer) => Value::Integer(integer),
                 Err(_) => Value::Float(number.as_str().parse().unwrap_or(f64::INFINITY)),
@@ -161,19 +168,19 @@ impl Builder {
             DeValue::Array(items) => Value::List(items.into_iter().map(|item| self.node(item, depth + 1)).collect()),
             DeValue::Table(table) => self.table(table, depth + 1),
         };
-        Node { span, value }
+        Node { place, value }
     }
 
-    fn table(&mut self, table: DeTable<'_>, depth: usize) -> Value {
-        let mut entries: Vec<(Key, Node)> = table
+    fn table<'t>(&mut self, table: DeTable<'t>, depth: usize) -> Value<'t> {
+        let mut entries: Vec<(Key<'t>, Node<'t>)> = table
             .into_iter()
             .map(|(key, value)| {
-                let span = Span { source: self.source, range: key.span() };
-                (Key { name: key.into_inner().into_owned(), span }, self.node(value, depth))
+                let place = Place::new(self.source, key.span());
+                (Key { name: key.into_inner(), place }, self.node(value, depth))
             })
             .collect();
         // The parser keeps them sorted by name; the author's order makes for messages in the order of the file.
-        entries.sort_by_key(|(key, _)| key.span.range.start);
+        entries.sort_by_key(|(key, _)| key.place.start);
         Value::Table(entries)
     }
 }

@@ -1,20 +1,34 @@
 //! A scene file as a tree of values, each with its place: what TOML, JSON and `--set` are parsed into, and what the checks
 //! and the deserializer read.
+//!
+//! A scene that a program wrote has hundreds of thousands of values, so the tree is frugal: places are three small numbers,
+//! and texts without escapes are borrowed from the file.
 
-use crate::diagnostic::Span;
+use std::borrow::Cow;
+use std::ops::Range;
+
+use crate::diagnostic::{SourceId, Span};
 
 /// A value and where it is said.
-#[derive(Clone, Debug)]
-pub(in crate::document) struct Node {
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::document) struct Node<'t> {
     /// Where: the whole value, or for a table under a header, the header.
-    pub span: Span,
+    pub place: Place,
     /// What.
-    pub value: Value,
+    pub value: Value<'t>,
+}
+
+/// A stretch of one source, in half the bytes of a [`Span`]: texts of more than [`Place::LONGEST`] bytes are refused before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::document) struct Place {
+    pub source: SourceId,
+    pub start: u32,
+    pub end: u32,
 }
 
 /// A value.
-#[derive(Clone, Debug)]
-pub(in crate::document) enum Value {
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::document) enum Value<'t> {
     /// `true` or `false`.
     Boolean(bool),
     /// A whole number.
@@ -22,25 +36,40 @@ pub(in crate::document) enum Value {
     /// Any other number, NaN and infinity too.
     Float(f64),
     /// A text.
-    Text(String),
+    Text(Cow<'t, str>),
     /// A date or time, or JSON's `null`: nothing that a scene takes. Its name, for messages.
     Other(&'static str),
     /// A list.
-    List(Vec<Node>),
+    List(Vec<Node<'t>>),
     /// A table, in the order of the file; keys are unique.
-    Table(Vec<(Key, Node)>),
+    Table(Vec<(Key<'t>, Node<'t>)>),
 }
 
 /// A key of a table.
-#[derive(Clone, Debug)]
-pub(in crate::document) struct Key {
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::document) struct Key<'t> {
     /// The key.
-    pub name: String,
+    pub name: Cow<'t, str>,
     /// Where.
-    pub span: Span,
+    pub place: Place,
 }
 
-impl Node {
+impl Place {
+    /// The longest text whose places can be said; bytes.
+    pub const LONGEST: usize = u32::MAX as usize;
+
+    /// A stretch of a source of at most [`Place::LONGEST`] bytes.
+    pub fn new(source: SourceId, range: Range<usize>) -> Self {
+        Self { source, start: range.start as u32, end: range.end as u32 }
+    }
+
+    /// As diagnostics take it.
+    pub fn span(self) -> Span {
+        Span { source: self.source, range: self.start as usize..self.end as usize }
+    }
+}
+
+impl Node<'_> {
     /// What messages call this kind of value.
     pub fn called(&self) -> &'static str {
         match &self.value {

@@ -22,7 +22,7 @@ mod ply;
 pub mod polygon;
 mod report;
 mod stl;
-mod text;
+pub(crate) mod text;
 
 pub use mesh_file::{ColorFile, DielectricFile, MaterialFile, MeshFile};
 pub use mesh_scene::mesh_scene;

@@ -134,51 +134,57 @@ pub(crate) fn parse_float(text: &[u8]) -> Option<f64> {
 /// The fast path: `None` where the number is not simple enough, or none.
 #[inline]
 fn simple_float(text: &[u8]) -> Option<f64> {
-    let (negative, digits) = match text {
-        [b'-', rest @ ..] => (true, rest),
-        [b'+', rest @ ..] => (false, rest),
-        _ => (false, text),
-    };
-    if digits.len() > 26 {
+    let negative = text.first() == Some(&b'-');
+    let start = usize::from(negative || text.first() == Some(&b'+'));
+    // Longer ones seldom are simple.
+    if text.len() > 20 {
         return None;
     }
-    let (mut mantissa, mut count, mut after_point, mut seen_point) = (0u64, 0u32, 0i32, false);
-    let mut exponent = 0i32;
-    let mut position = 0;
-    while position < digits.len() {
-        match digits[position] {
-            digit @ b'0'..=b'9' => {
-                count += 1;
-                if count > 18 {
-                    return None;
-                }
-                mantissa = mantissa * 10 + u64::from(digit - b'0');
-                after_point += i32::from(seen_point);
-            }
-            b'.' if !seen_point => seen_point = true,
-            b'e' | b'E' => {
-                let (sign, power) = match &digits[position + 1..] {
-                    [b'-', rest @ ..] => (-1, rest),
-                    [b'+', rest @ ..] => (1, rest),
-                    rest => (1, rest),
-                };
-                if power.is_empty() || power.len() > 4 || !power.iter().all(u8::is_ascii_digit) {
-                    return None;
-                }
-                exponent = sign * power.iter().fold(0, |e, d| e * 10 + i32::from(d - b'0'));
-                break;
-            }
-            _ => return None,
-        }
-        position += 1;
+    let mut mantissa = 0;
+    let whole = digits(text, start, &mut mantissa);
+    let (mut end, mut count) = (start + whole, whole);
+    let mut scale = 0;
+    if text.get(end) == Some(&b'.') {
+        let fraction = digits(text, end + 1, &mut mantissa);
+        end += 1 + fraction;
+        count += fraction;
+        scale = -(fraction as i32);
     }
-    let scale = exponent - after_point;
-    if count == 0 || mantissa > 1 << 53 || scale.unsigned_abs() > 22 {
+    if end < text.len() {
+        if text[end] | 0x20 != b'e' {
+            return None;
+        }
+        let minus = text.get(end + 1) == Some(&b'-');
+        let first = end + 1 + usize::from(minus || text.get(end + 1) == Some(&b'+'));
+        let mut power = 0;
+        let length = digits(text, first, &mut power);
+        if length == 0 || length > 4 || first + length < text.len() {
+            return None;
+        }
+        scale += if minus { -(power as i32) } else { power as i32 };
+    }
+    // No more than 18 digits, and so without overflow.
+    if count == 0 || count > 18 || mantissa > 1 << 53 || scale.unsigned_abs() > 22 {
         return None;
     }
     let power = TENS[scale.unsigned_abs() as usize];
     let value = if scale < 0 { mantissa as f64 / power } else { mantissa as f64 * power };
     Some(if negative { -value } else { value })
+}
+
+/// How many digits stand from a place on; they are appended to `number`, which wraps around.
+#[inline]
+fn digits(text: &[u8], start: usize, number: &mut u64) -> usize {
+    let mut count = 0;
+    for &byte in text.get(start..).unwrap_or_default() {
+        let digit = byte.wrapping_sub(b'0');
+        if digit > 9 {
+            break;
+        }
+        *number = number.wrapping_mul(10).wrapping_add(u64::from(digit));
+        count += 1;
+    }
+    count
 }
 
 /// A decimal whole number with an optional sign; `None` for anything else, and beyond 18 digits.

@@ -5,6 +5,7 @@
 
 mod names;
 pub(super) mod number;
+mod rules;
 mod say;
 mod table;
 mod text;
@@ -13,15 +14,24 @@ use super::schema::Part;
 use super::tree::{Node, Value};
 use crate::diagnostic::{Diagnostic, Diagnostics, Span};
 use names::Names;
+use rules::{Child, ListRule, Rule, Rules};
 pub(in crate::document) use say::expected;
 
 /// How many mistakes of form are told one by one.
 const MAX_TOLD: usize = 100;
 
 /// Checks a whole file and takes out of its tree what is wrong.
-pub(in crate::document) fn check(root: &mut Node, schema: &serde_json::Value, diagnostics: &mut Diagnostics) {
+pub(in crate::document) fn check(root: &mut Node<'_>, schema: &serde_json::Value, diagnostics: &mut Diagnostics) {
     let Some(part) = Part::root(schema) else { return };
-    let mut checker = Checker { root: part, names: Names::of(root), path: Vec::new(), diagnostics, told: 0, untold: 0 };
+    let mut checker = Checker {
+        root: part,
+        rules: Rules::default(),
+        names: Names::of(root),
+        path: Vec::new(),
+        diagnostics,
+        told: 0,
+        untold: 0,
+    };
     checker.duplicate_names(root);
     let keep = checker.file(root, part);
     if checker.untold > 0 {
@@ -39,7 +49,7 @@ enum Keep {
     Nothing,
 }
 
-fn prune(root: &mut Node, keep: Vec<Keep>) {
+fn prune(root: &mut Node<'_>, keep: Vec<Keep>) {
     let Value::Table(entries) = &mut root.value else { return };
     let mut keep = keep.into_iter();
     entries.retain_mut(|(_, node)| match keep.next() {
@@ -58,22 +68,24 @@ fn prune(root: &mut Node, keep: Vec<Keep>) {
 }
 
 /// One step on the way to a value.
-#[derive(Clone, Debug)]
-enum Step {
-    Key(String),
+#[derive(Clone, Copy, Debug)]
+enum Step<'n> {
+    Key(&'n str),
     Index(usize),
 }
 
-struct Checker<'a> {
+/// Checks the nodes of one tree (`'n`) against one schema (`'a`).
+struct Checker<'a, 'n> {
     root: Part<'a>,
+    rules: Rules<'a>,
     names: Names,
-    path: Vec<Step>,
+    path: Vec<Step<'n>>,
     diagnostics: &'a mut Diagnostics,
     told: usize,
     untold: usize,
 }
 
-impl<'a> Checker<'a> {
+impl<'a, 'n> Checker<'a, 'n> {
     fn tell(&mut self, diagnostic: Diagnostic) {
         if !self.is_enough() {
             self.told += 1;
@@ -89,7 +101,7 @@ impl<'a> Checker<'a> {
     }
 
     /// The whole file: what of each of its entries is right.
-    fn file(&mut self, root: &Node, part: Part<'a>) -> Vec<Keep> {
+    fn file(&mut self, root: &'n Node<'_>, part: Part<'a>) -> Vec<Keep> {
         let Value::Table(entries) = &root.value else { return Vec::new() };
         let mut keep = Vec::with_capacity(entries.len());
         for (key, node) in entries {
@@ -98,16 +110,20 @@ impl<'a> Checker<'a> {
                 keep.push(Keep::Nothing);
                 continue;
             };
-            self.path.push(Step::Key(key.name.clone()));
+            self.path.push(Step::Key(&key.name));
             keep.push(match (&node.value, property.items(), property.entries()) {
                 (Value::List(items), Some(item), _) => {
-                    Keep::Items(items.iter().enumerate().map(|(i, node)| self.item(i, node, item)).collect())
+                    let rule = self.rules.of(item);
+                    Keep::Items(items.iter().enumerate().map(|(i, node)| self.item(i, node, &rule)).collect())
                 }
                 (Value::Table(items), _, Some(item)) => {
-                    Keep::Items(items.iter().map(|(key, node)| self.entry(&key.name, node, item)).collect())
+                    let rule = self.rules.of(item);
+                    Keep::Items(items.iter().map(|(key, node)| self.entry(&key.name, node, &rule)).collect())
                 }
-                _ if self.value(node, property) => Keep::Whole,
-                _ => Keep::Nothing,
+                _ => {
+                    let rule = self.rules.of(property);
+                    if self.value(node, &rule) { Keep::Whole } else { Keep::Nothing }
+                }
             });
             self.path.pop();
         }
@@ -115,34 +131,38 @@ impl<'a> Checker<'a> {
     }
 
     /// Any value; true where it is right.
-    fn value(&mut self, node: &Node, part: Part<'a>) -> bool {
-        let forms = part.forms();
-        let form = forms.iter().copied().find(|form| takes(*form, &node.value));
-        match (&node.value, form) {
-            (Value::Integer(_) | Value::Float(_), Some(form)) => self.number(node, part, form),
-            (Value::Text(text), Some(_)) => self.text(node, text, part, &forms),
-            (Value::List(items), Some(form)) => self.list(node, items, form),
-            (Value::Table(entries), Some(form)) => self.table(node, entries, form),
-            (Value::Boolean(_), Some(_)) => true,
+    fn value(&mut self, node: &'n Node<'_>, rule: &Rule<'a>) -> bool {
+        match (&node.value, rule) {
+            (Value::Integer(_) | Value::Float(_), Rule { number: Some(rule), .. }) => self.number(node, rule),
+            (Value::Text(text), Rule { text: Some(rule), .. }) => self.text(node, text, rule),
+            (Value::List(items), Rule { list: Some(rule), .. }) => self.list(node, items, rule),
+            (Value::Table(entries), Rule { table: Some(rule), .. }) => self.table(node, entries, rule),
+            (Value::Boolean(_), Rule { boolean: true, .. }) => true,
             _ => {
-                self.wrong_type(node, part, &forms);
+                self.wrong_type(node, rule.part, &rule.forms);
                 false
             }
         }
     }
 
-    fn wrong_type(&mut self, node: &Node, part: Part<'a>, forms: &[Part<'a>]) {
+    /// A value within another.
+    fn child(&mut self, node: &'n Node<'_>, child: &Child<'a>) -> bool {
+        let rule = self.rules.of_child(child);
+        self.value(node, &rule)
+    }
+
+    fn wrong_type(&mut self, node: &Node<'_>, part: Part<'a>, forms: &[Part<'a>]) {
         if self.is_enough() {
             return;
         }
         let expected = expected(part);
         let message = format!("{} must be {}, but is {}", self.place(), say::kinds(part), node.called());
-        let mut diagnostic = Diagnostic::error(message).at(node.span.clone(), format!("expected {expected}"));
+        let mut diagnostic = Diagnostic::error(message).at(node.place.span(), format!("expected {expected}"));
         let wanted = |kind: &str| forms.iter().any(|form| form.kind() == Some(kind));
         if let Value::Text(text) = &node.value {
             if (wanted("number") || wanted("integer")) && text.trim().parse::<f64>().is_ok() {
                 diagnostic = diagnostic.help("write the number without quotes");
-            } else if wanted("boolean") && matches!(text.as_str(), "true" | "false") {
+            } else if wanted("boolean") && matches!(text.as_ref(), "true" | "false") {
                 diagnostic = diagnostic.help("write it without quotes");
             }
         } else if let Value::Table(_) = &node.value
@@ -157,7 +177,7 @@ impl<'a> Checker<'a> {
     /// The way to the value now looked at, where it has one or two keys: what may be the name of a section.
     fn section(&self) -> Option<String> {
         match self.path.as_slice() {
-            [Step::Key(key)] => Some(key.clone()),
+            [Step::Key(key)] => Some((*key).to_owned()),
             [Step::Key(outer), Step::Key(key)] | [Step::Key(outer), Step::Index(_), Step::Key(key)] => {
                 Some(format!("{outer}.{key}"))
             }
@@ -165,36 +185,37 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn list(&mut self, node: &Node, items: &[Node], form: Part<'a>) -> bool {
+    fn list(&mut self, node: &'n Node<'_>, items: &'n [Node<'_>], rule: &ListRule<'a>) -> bool {
         let mut right = true;
         let count = items.len() as f64;
-        let (min, max) = (form.number("minItems"), form.number("maxItems"));
-        if min.is_some_and(|min| count < min) || max.is_some_and(|max| count > max) {
-            let message = format!("{} must be {}, but has {}", self.place(), say::kinds(form), items.len());
-            self.tell(Diagnostic::error(message).at(node.span.clone(), format!("expected {}", expected(form))));
+        if rule.least.is_some_and(|least| count < least) || rule.most.is_some_and(|most| count > most) {
+            let message = format!("{} must be {}, but has {}", self.place(), say::kinds(rule.form), items.len());
+            let label = format!("expected {}", expected(rule.form));
+            self.tell(Diagnostic::error(message).at(node.place.span(), label));
             right = false;
         }
-        if let Some(item) = form.items() {
+        if let Some(item) = &rule.item {
+            let rule = self.rules.of_child(item);
             for (i, node) in items.iter().enumerate() {
-                right &= self.item(i, node, item);
+                right &= self.item(i, node, &rule);
             }
         }
         right
     }
 
-    fn item(&mut self, index: usize, node: &Node, part: Part<'a>) -> bool {
+    fn item(&mut self, index: usize, node: &'n Node<'_>, rule: &Rule<'a>) -> bool {
         self.path.push(match node.get("name").and_then(Node::text) {
-            Some(name) => Step::Key(name.to_owned()),
+            Some(name) => Step::Key(name),
             None => Step::Index(index),
         });
-        let right = self.value(node, part);
+        let right = self.value(node, rule);
         self.path.pop();
         right
     }
 
-    fn entry(&mut self, key: &str, node: &Node, part: Part<'a>) -> bool {
-        self.path.push(Step::Key(key.to_owned()));
-        let right = self.value(node, part);
+    fn entry(&mut self, key: &'n str, node: &'n Node<'_>, rule: &Rule<'a>) -> bool {
+        self.path.push(Step::Key(key));
+        let right = self.value(node, rule);
         self.path.pop();
         right
     }
@@ -209,24 +230,11 @@ impl<'a> Checker<'a> {
             .iter()
             .map(|step| match step {
                 Step::Index(index) => index.to_string(),
-                Step::Key(key) if super::overrides::is_bare(key) => key.clone(),
+                Step::Key(key) if super::overrides::is_bare(key) => (*key).to_owned(),
                 Step::Key(key) => format!("{key:?}"),
             })
             .collect();
         format!("`{}`", steps.join("."))
-    }
-}
-
-/// True where a part of the schema takes values of this type.
-fn takes(form: Part<'_>, value: &Value) -> bool {
-    let Some(kind) = form.kind() else { return false };
-    match value {
-        Value::Boolean(_) => kind == "boolean",
-        Value::Integer(_) | Value::Float(_) => kind == "number" || kind == "integer",
-        Value::Text(_) => kind == "string",
-        Value::List(_) => kind == "array",
-        Value::Table(_) => kind == "object",
-        Value::Other(_) => false,
     }
 }
 

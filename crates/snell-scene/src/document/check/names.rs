@@ -1,6 +1,6 @@
 //! The names that a scene defines and refers to: unknown ones, double ones, unused ones.
 
-use super::super::tree::{Key, Node, Value};
+use super::super::tree::{Key, Node, Place, Value};
 use super::Checker;
 use crate::diagnostic::{Diagnostic, Diagnostics, Span};
 
@@ -19,11 +19,16 @@ struct Name {
 pub(super) struct Names(Vec<Name>);
 
 impl Names {
-    pub fn of(root: &Node) -> Self {
+    pub fn of(root: &Node<'_>) -> Self {
         let mut names = Vec::new();
         for table in TABLES {
             if let Some(Value::Table(entries)) = root.get(table).map(|node| &node.value) {
-                let name = |key: &Key| Name { table, name: key.name.clone(), span: key.span.clone(), used: false };
+                let name = |key: &Key<'_>| Name {
+                    table,
+                    name: key.name.clone().into_owned(),
+                    span: key.place.span(),
+                    used: false,
+                };
                 names.extend(entries.iter().map(|(key, _)| name(key)));
             }
         }
@@ -64,23 +69,23 @@ impl Names {
     }
 }
 
-impl Checker<'_> {
+impl Checker<'_, '_> {
     /// Lights, objects and plots of the same name, which `--set` could not tell apart.
-    pub(super) fn duplicate_names(&mut self, root: &Node) {
+    pub(super) fn duplicate_names(&mut self, root: &Node<'_>) {
         for table in ["light", "object", "plot"] {
             let Some(Value::List(items)) = root.get(table).map(|node| &node.value) else { continue };
-            let mut names: Vec<(&str, &Span)> = items
+            let mut names: Vec<(&str, Place)> = items
                 .iter()
                 .filter_map(|item| item.get("name"))
-                .filter_map(|node| Some((node.text()?, &node.span)))
+                .filter_map(|node| Some((node.text()?, node.place)))
                 .collect();
-            names.sort_by_key(|(name, span)| (*name, span.range.start));
+            names.sort_by_key(|(name, place)| (*name, place.start));
             for pair in names.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
                 let message = format!("two {table}s have the name {:?}", pair[1].0);
                 self.tell(
                     Diagnostic::error(message)
-                        .at(pair[1].1.clone(), "the same name again")
-                        .related(pair[0].1.clone(), "first defined here"),
+                        .at(pair[1].1.span(), "the same name again")
+                        .related(pair[0].1.span(), "first defined here"),
                 );
             }
         }

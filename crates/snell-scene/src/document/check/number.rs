@@ -2,6 +2,7 @@
 
 use super::super::schema::Part;
 use super::super::tree::{Node, Value};
+use super::rules::NumberRule;
 use super::{Checker, say};
 use crate::diagnostic::Diagnostic;
 
@@ -10,12 +11,11 @@ const LARGEST: f64 = 1e30;
 /// The smallest number above 0 where 0 itself is not possible.
 pub(in crate::document) const SMALLEST: f64 = 1e-30;
 
-impl<'a> Checker<'a> {
-    /// A number, of which `part` and `form` say the range.
-    pub(super) fn number(&mut self, node: &Node, part: Part<'a>, form: Part<'a>) -> bool {
+impl Checker<'_, '_> {
+    /// A number.
+    pub(super) fn number(&mut self, node: &Node<'_>, rule: &NumberRule<'_>) -> bool {
         let Some(number) = node.number() else { return false };
-        let range = Range::of(part, form);
-        let whole = form.kind() == Some("integer");
+        let &NumberRule { part, form, ref range, whole } = rule;
         let wrong = if !number.is_finite() {
             "must be a finite number".to_owned()
         } else if whole && !matches!(node.value, Value::Integer(_)) {
@@ -30,7 +30,7 @@ impl<'a> Checker<'a> {
             return true;
         };
         let message = format!("{} is {}, but {wrong}", self.place(), show(number));
-        self.tell(Diagnostic::error(message).at(node.span.clone(), format!("expected {}", say::number(part, form))));
+        self.tell(Diagnostic::error(message).at(node.place.span(), format!("expected {}", say::number(part, form))));
         false
     }
 }

@@ -2,46 +2,54 @@
 
 use super::super::schema::Part;
 use super::super::tree::{Key, Node};
-use super::{Checker, say, with_related};
+use super::rules::TableRule;
+use super::{Checker, Step, say, with_related};
 use crate::diagnostic::{Diagnostic, did_you_mean};
 
-impl<'a> Checker<'a> {
-    pub(super) fn table(&mut self, node: &Node, entries: &[(Key, Node)], form: Part<'a>) -> bool {
+impl<'a, 'n> Checker<'a, 'n> {
+    pub(super) fn table(&mut self, node: &Node<'_>, entries: &'n [(Key<'_>, Node<'_>)], rule: &TableRule<'a>) -> bool {
+        let form = rule.form;
         let mut right = true;
         let mut guessed = Vec::new();
+        // Those of which exactly one must be there.
+        let mut choices = [None; 2];
         for (key, value) in entries {
-            if let Some(property) = form.property(&key.name) {
-                right &= self.entry(&key.name, value, property);
-            } else if let Some(entry) = form.entries() {
-                right &= self.entry(&key.name, value, entry);
+            let property = rule.property(&key.name);
+            if property.is_some_and(|property| property.is_choice) {
+                let place = usize::from(choices[0].is_some());
+                choices[place].get_or_insert(key);
+            }
+            if let Some(child) = property.map(|property| &property.child).or(rule.entries.as_ref()) {
+                self.path.push(Step::Key(&key.name));
+                right &= self.child(value, child);
+                self.path.pop();
             } else {
                 guessed.extend(self.unknown_key(key, form));
                 right = false;
             }
         }
         let find = |name: &str| entries.iter().find(|(key, _)| key.name == name).map(|(key, _)| key);
-        for name in form.required() {
-            if find(name).is_none() && !guessed.contains(&name) {
+        for name in &rule.required {
+            if find(name).is_none() && !guessed.contains(name) {
                 self.missing_key(node, name, form);
                 right = false;
             }
         }
-        let kinds = form.exactly_one();
-        let present: Vec<&Key> = entries.iter().map(|(key, _)| key).filter(|key| kinds.contains(&&*key.name)).collect();
-        if let [first, second, ..] = present.as_slice() {
+        let kinds = &rule.exactly_one;
+        if let [Some(first), Some(second)] = choices {
             self.exclusive_keys(first, second);
             right = false;
-        } else if present.is_empty() && !kinds.is_empty() && !guessed.iter().any(|guess| kinds.contains(guess)) {
+        } else if choices[0].is_none() && !kinds.is_empty() && !guessed.iter().any(|guess| kinds.contains(guess)) {
             let choice = say::list(kinds.iter().map(|kind| format!("`{kind}`")), "or");
             let message = format!("{} needs one of the keys {choice}", self.place());
-            self.tell(Diagnostic::error(message).at(node.span.clone(), "has none of them"));
+            self.tell(Diagnostic::error(message).at(node.place.span(), "has none of them"));
             right = false;
         }
-        for set in form.at_most_one() {
-            let present: Vec<&Key> = set.iter().filter_map(|name| find(name)).collect();
-            if let [first, second, ..] = present.as_slice() {
+        for set in &rule.at_most_one {
+            let mut present = set.iter().filter_map(|name| find(name));
+            if let (Some(first), Some(second)) = (present.next(), present.next()) {
                 let (first, second) =
-                    if first.span.range.start <= second.span.range.start { (first, second) } else { (second, first) };
+                    if first.place.start <= second.place.start { (first, second) } else { (second, first) };
                 self.exclusive_keys(first, second);
                 right = false;
             }
@@ -49,20 +57,20 @@ impl<'a> Checker<'a> {
         right
     }
 
-    fn missing_key(&mut self, node: &Node, name: &str, form: Part<'a>) {
+    fn missing_key(&mut self, node: &Node<'_>, name: &str, form: Part<'a>) {
         let what = form.property(name).map_or_else(String::new, |part| format!(": {}", say::expected(part)));
         let message = format!("{} needs the key `{name}`", self.place());
-        self.tell(Diagnostic::error(message).at(node.span.clone(), format!("expected `{name}`{what}")));
+        self.tell(Diagnostic::error(message).at(node.place.span(), format!("expected `{name}`{what}")));
     }
 
-    fn exclusive_keys(&mut self, first: &Key, second: &Key) {
+    fn exclusive_keys(&mut self, first: &Key<'_>, second: &Key<'_>) {
         let message = format!("{} has both `{}` and `{}`", self.place(), first.name, second.name);
-        let diagnostic = Diagnostic::error(message).at(second.span.clone(), "only one of the two is possible");
-        self.tell(with_related(diagnostic, Some(first.span.clone()), "the other is here"));
+        let diagnostic = Diagnostic::error(message).at(second.place.span(), "only one of the two is possible");
+        self.tell(with_related(diagnostic, Some(first.place.span()), "the other is here"));
     }
 
     /// Tells of a key that is not there, and gives the key that was probably meant.
-    pub(super) fn unknown_key(&mut self, key: &Key, form: Part<'a>) -> Option<&'a str> {
+    pub(super) fn unknown_key(&mut self, key: &Key<'_>, form: Part<'a>) -> Option<&'a str> {
         if self.is_enough() {
             return None;
         }
@@ -77,7 +85,7 @@ impl<'a> Checker<'a> {
             Some(name) => format!("did you mean `{name}`?"),
             None => self.where_else(&key.name, form),
         };
-        self.tell(Diagnostic::error(message).at(key.span.clone(), "unknown key").help(help));
+        self.tell(Diagnostic::error(message).at(key.place.span(), "unknown key").help(help));
         meant
     }
 

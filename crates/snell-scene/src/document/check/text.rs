@@ -3,38 +3,33 @@
 use super::super::color;
 use super::super::schema::Part;
 use super::super::tree::Node;
+use super::rules::{FreeText, TextRule};
 use super::{Checker, say};
 use crate::diagnostic::{Diagnostic, did_you_mean};
 
 /// How many names a message lists.
 const MAX_LISTED: usize = 8;
 
-impl<'a> Checker<'a> {
+impl<'a> Checker<'a, '_> {
     /// A text, in any of the forms that take one.
-    pub(super) fn text(&mut self, node: &Node, text: &str, part: Part<'a>, forms: &[Part<'a>]) -> bool {
-        let forms: Vec<Part<'a>> = forms.iter().copied().filter(|form| form.kind() == Some("string")).collect();
-        let words: Vec<&str> = forms.iter().flat_map(Part::words).collect();
-        if words.contains(&text) {
+    pub(super) fn text(&mut self, node: &Node<'_>, text: &str, rule: &TextRule<'a>) -> bool {
+        if rule.words.contains(&text) {
             return true;
         }
-        let Some(free) = forms.iter().find(|form| form.words().is_empty()) else {
-            return self.unknown_word(node, text, part, &words);
-        };
-        if free.text("format") == Some("color") {
-            return color::parse(text).is_some() || self.unknown_color(node, text);
-        }
-        match free.text("x-names") {
-            Some(table) => self.name(node, text, table),
-            None => true,
+        match rule.free {
+            None => self.unknown_word(node, text, rule.part, &rule.words),
+            Some(FreeText::Color) => color::parse(text).is_some() || self.unknown_color(node, text),
+            Some(FreeText::Name(table)) => self.name(node, text, table),
+            Some(FreeText::Any) => true,
         }
     }
 
-    fn unknown_word(&mut self, node: &Node, text: &str, part: Part<'a>, words: &[&str]) -> bool {
+    fn unknown_word(&mut self, node: &Node<'_>, text: &str, part: Part<'a>, words: &[&str]) -> bool {
         if self.is_enough() {
             return false;
         }
         let message = format!("{} is {text:?}, but must be {}", self.place(), say::expected(part));
-        let diagnostic = Diagnostic::error(message).at(node.span.clone(), "not one of its words");
+        let diagnostic = Diagnostic::error(message).at(node.place.span(), "not one of its words");
         self.tell(match say::nearest(text, words.iter().copied()) {
             Some(word) => diagnostic.help(format!("did you mean {word:?}?")),
             None => diagnostic,
@@ -42,12 +37,12 @@ impl<'a> Checker<'a> {
         false
     }
 
-    fn unknown_color(&mut self, node: &Node, text: &str) -> bool {
+    fn unknown_color(&mut self, node: &Node<'_>, text: &str) -> bool {
         if self.is_enough() {
             return false;
         }
         let diagnostic = Diagnostic::error(format!("{}: there is no colour {text:?}", self.place()))
-            .at(node.span.clone(), "expected a colour");
+            .at(node.place.span(), "expected a colour");
         let help = if text.starts_with('#') {
             "write \"#rgb\" or \"#rrggbb\", with hexadecimal digits".to_owned()
         } else if self.names.has("texture", text) {
@@ -61,7 +56,7 @@ impl<'a> Checker<'a> {
         false
     }
 
-    fn name(&mut self, node: &Node, text: &str, table: &str) -> bool {
+    fn name(&mut self, node: &Node<'_>, text: &str, table: &str) -> bool {
         if self.names.refer(table, text) {
             return true;
         }
@@ -69,7 +64,7 @@ impl<'a> Checker<'a> {
             return false;
         }
         let diagnostic =
-            Diagnostic::error(format!("there is no {table} {text:?}")).at(node.span.clone(), "not defined anywhere");
+            Diagnostic::error(format!("there is no {table} {text:?}")).at(node.place.span(), "not defined anywhere");
         let names: Vec<&str> = self.names.all(table).collect();
         let help = match say::nearest(text, names.iter().copied()) {
             Some(name) => format!("did you mean {name:?}?"),

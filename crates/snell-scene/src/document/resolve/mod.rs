@@ -32,9 +32,9 @@ use crate::table::Id;
 /// The largest picture.
 const MAX_PIXELS: u64 = 1 << 28;
 
-/// Resolves a document; `base` is the path of the scene file.
+/// Resolves a document; `base` is the path of the scene file. Objects are used up one by one, since they may be very many.
 pub(in crate::document) fn resolve(
-    document: &model::Document,
+    document: model::Document,
     base: &str,
     assets: &dyn Assets,
     diagnostics: &mut Diagnostics,
@@ -51,7 +51,7 @@ pub(in crate::document) fn resolve(
         meshes: BTreeMap::new(),
         default_material: None,
     };
-    resolver.settings(document);
+    resolver.settings(&document);
     resolver.scene.ambient = document.ambient.0;
     resolver.scene.camera = resolver.camera(&document.camera);
     if let Some(background) = &document.background {
@@ -64,8 +64,8 @@ pub(in crate::document) fn resolve(
         let id = resolver.scene.materials.push(material);
         resolver.materials.insert(name.value.clone(), id);
     }
-    resolver.named_prototypes(&document.prototype);
-    resolver.world(&document.object);
+    resolver.named_prototypes(document.prototype);
+    resolver.world(document.object);
     let aspect = f64::from(document.image.width) / f64::from(document.image.height);
     resolver.scene.drawing = resolver.drawing(&document.drawing, aspect);
     resolver.scene.plots = resolver.plots(&document.plot);

@@ -15,20 +15,29 @@ struct Surroundings {
     /// Whether what it is part of will give it a material.
     has_material: bool,
     world_from_parent: Transform,
+    /// That map cannot be computed with.
+    is_out_of_range: bool,
+}
+
+impl Surroundings {
+    /// Nothing around.
+    fn none(has_material: bool) -> Self {
+        Self { has_material, world_from_parent: Transform::IDENTITY, is_out_of_range: false }
+    }
 }
 
 impl Resolver<'_> {
     /// All prototypes, each after those that it places.
-    pub(super) fn named_prototypes(&mut self, named: &Named<model::Object>) {
-        let (_, order) = self.in_order(named, "prototype", "contains itself", references);
+    pub(super) fn named_prototypes(&mut self, mut named: Named<model::Object>) {
+        let (_, order) = self.in_order(&named, "prototype", "contains itself", references);
         let mut sizes = Vec::new();
         for i in order {
-            let (name, object) = &named.0[i];
+            let (name, object) = &mut named.0[i];
+            let object = std::mem::take(object);
             // Whatever it is placed as gives the material and the place.
-            let surroundings = Surroundings { has_material: true, world_from_parent: Transform::IDENTITY };
-            let object = self.object(object, surroundings);
+            let object = self.object(object, Surroundings::none(true));
             let size = Size::of(&object, &sizes);
-            self.check_size(size, &name.span, &format!("the prototype {:?}", name.value));
+            self.check_size(size, &name.span, || format!("the prototype {:?}", name.value));
             sizes.push(size);
             let prototype = Prototype { name: name.value.clone(), objects: vec![object] };
             let id = self.scene.prototypes.push(prototype);
@@ -37,64 +46,68 @@ impl Resolver<'_> {
     }
 
     /// The objects in the scene.
-    pub(super) fn world(&mut self, objects: &[Located<model::Object>]) {
+    pub(super) fn world(&mut self, objects: Vec<Located<model::Object>>) {
         let mut sizes = Vec::new();
         for (_, prototype) in self.scene.prototypes.enumerate() {
             let size = Size::of_all(&prototype.objects, &sizes);
             sizes.push(size);
         }
-        let surroundings = Surroundings { has_material: false, world_from_parent: Transform::IDENTITY };
         let mut total = Size::default();
         for located in objects {
-            let object = self.object(located, surroundings);
+            let object = self.object(located, Surroundings::none(false));
             let size = Size::of(&object, &sizes);
-            let name = object.name.as_ref().map_or("this object".to_owned(), |name| format!("the object {name:?}"));
-            if !self.check_size(size, &located.span, &name) {
+            let name = || object.name.as_ref().map_or("this object".to_owned(), |name| format!("the object {name:?}"));
+            if !self.check_size(size, &object.span, name) {
                 continue;
             }
             total = total.and(size);
             self.scene.objects.push(object);
         }
-        self.check_size(total, &None, "the scene");
+        self.check_size(total, &None, || "the scene".to_owned());
     }
 
-    fn check_size(&mut self, size: Size, span: &Option<Span>, what: &str) -> bool {
+    fn check_size(&mut self, size: Size, span: &Option<Span>, what: impl FnOnce() -> String) -> bool {
         match size.excess() {
             Some(excess) => {
-                self.error(span, format!("{what} {excess}"), "too much");
+                self.error(span, format!("{} {excess}", what()), "too much");
                 false
             }
             None => true,
         }
     }
 
-    fn object(&mut self, located: &Located<model::Object>, around: Surroundings) -> Object {
-        let object = &located.value;
+    fn object(&mut self, located: Located<model::Object>, around: Surroundings) -> Object {
+        let Located { value: mut object, span } = located;
         let mut parent_from_object =
-            self.placement(object.scale.as_deref(), object.rotate.as_deref(), object.translate.unwrap_or_default());
-        let world_from_object = around.world_from_parent * parent_from_object;
-        if Transform::from_affine(*world_from_object.affine()).is_none() {
+            self.placement(object.scale.as_deref(), object.rotate.as_deref(), object.translate);
+        let Surroundings { mut world_from_parent, mut is_out_of_range, .. } = around;
+        if !parent_from_object.is_identity() {
+            world_from_parent = world_from_parent * parent_from_object;
+            is_out_of_range = Transform::from_affine(*world_from_parent.affine()).is_none();
+        }
+        if is_out_of_range {
             let message = "all the scales around this object together make it too large or too small";
-            self.error(&located.span, message, "placed here");
+            self.error(&span, message, "placed here");
         }
         let mut material = object.material.as_ref().map(|choice| self.chosen_material(choice));
         let inner = Surroundings {
             has_material: around.has_material || material.is_some(),
-            world_from_parent: world_from_object,
+            world_from_parent,
+            is_out_of_range,
         };
-        let kind = if let Some(parts) = &object.union {
-            self.solid(CsgOperation::Union, parts, inner)
-        } else if let Some(parts) = &object.intersection {
-            self.solid(CsgOperation::Intersection, parts, inner)
-        } else if let Some(parts) = &object.difference {
-            self.solid(CsgOperation::Difference, parts, inner)
-        } else if let Some(parts) = &object.group {
-            ObjectKind::Group(parts.iter().map(|part| self.object(part, inner)).collect())
+        let kind = if let Some(parts) = object.union.take() {
+            self.solid(CsgOperation::Union, *parts, inner)
+        } else if let Some(parts) = object.intersection.take() {
+            self.solid(CsgOperation::Intersection, *parts, inner)
+        } else if let Some(parts) = object.difference.take() {
+            self.solid(CsgOperation::Difference, *parts, inner)
+        } else if let Some(parts) = object.group.take() {
+            ObjectKind::Group(parts.into_iter().map(|part| self.object(part, inner)).collect())
         } else if let Some(name) = &object.instance {
             // A name that is missing here was left out for its own mistakes.
             ObjectKind::Instance(self.prototypes.get(&name.value.0).copied().unwrap_or(Id::from_index(0)))
-        } else if let Some(grid) = &object.grid {
-            self.grid(grid, inner)
+        } else if let Some(grid) = object.grid.take() {
+            self.grid(*grid, inner)
         } else if let Some(mesh) = &object.mesh {
             let name = object.name.as_ref().map(|name| &*name.value);
             let (mesh, fit) = self.mesh(mesh, name);
@@ -103,18 +116,12 @@ impl Resolver<'_> {
         } else if let Some(lens) = &object.lens {
             self.lens(lens)
         } else {
-            ObjectKind::Shape(self.shape(object, &located.span))
+            ObjectKind::Shape(self.shape(&object, &span))
         };
         if !inner.has_material && self.needs_material(&kind) {
             material = Some(self.default_material());
         }
-        Object {
-            name: object.name.as_ref().map(|name| name.value.clone()),
-            material,
-            parent_from_object,
-            kind,
-            span: located.span.clone(),
-        }
+        Object { name: object.name.map(|name| name.value), material, parent_from_object, kind, span }
     }
 
     /// True for what has a surface itself: the parts of groups and grids have been given their own.
@@ -128,10 +135,10 @@ impl Resolver<'_> {
         }
     }
 
-    fn grid(&mut self, grid: &Located<model::Grid>, inner: Surroundings) -> ObjectKind {
-        let model::Grid { count, step, of } = &grid.value;
+    fn grid(&mut self, grid: Located<model::Grid>, inner: Surroundings) -> ObjectKind {
+        let model::Grid { count, step, of } = grid.value;
         let step: [Vector3; 3] = match step {
-            Step::A([x, y, z]) => [Vector3::X * *x, Vector3::Y * *y, Vector3::Z * *z],
+            Step::A([x, y, z]) => [Vector3::X * x, Vector3::Y * y, Vector3::Z * z],
             Either::B(vectors) => [vectors.x.into(), vectors.y.into(), vectors.z.into()],
         };
         for i in 0..3 {
@@ -146,7 +153,7 @@ impl Resolver<'_> {
     fn solid(
         &mut self,
         operation: CsgOperation,
-        parts: &Located<Vec<Located<model::Object>>>,
+        parts: Located<Vec<Located<model::Object>>>,
         inner: Surroundings,
     ) -> ObjectKind {
         if parts.value.is_empty() {
@@ -160,10 +167,10 @@ impl Resolver<'_> {
         // The whole has a material for the surfaces of those parts that have none.
         let inner = Surroundings { has_material: true, ..inner };
         let mut solids = Vec::with_capacity(parts.value.len());
-        for part in &parts.value {
+        for part in parts.value {
             let object = self.object(part, inner);
             if let Err(why) = is_solid(&object) {
-                self.error(&part.span, format!("{why} has no inside and cannot be a part of a solid"), "not solid");
+                self.error(&object.span, format!("{why} has no inside and cannot be a part of a solid"), "not solid");
             }
             solids.push(object);
         }

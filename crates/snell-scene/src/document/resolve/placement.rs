@@ -11,8 +11,11 @@ impl Resolver<'_> {
         &mut self,
         scale: Option<&Located<Scale>>,
         rotate: Option<&Located<Rotation>>,
-        translate: Triple,
+        translate: Option<Triple>,
     ) -> Transform {
+        if scale.is_none() && rotate.is_none() && translate.is_none() {
+            return Transform::IDENTITY;
+        }
         let scale = match scale {
             Some(scale) => self.scale(scale),
             None => Transform::IDENTITY,
@@ -25,7 +28,7 @@ impl Resolver<'_> {
             }
             None => Transform::IDENTITY,
         };
-        Transform::translate(translate.into()) * rotate * scale
+        Transform::translate(translate.unwrap_or_default().into()) * rotate * scale
     }
 
     fn scale(&mut self, scale: &Located<Scale>) -> Transform {

@@ -63,7 +63,7 @@ impl Resolver<'_> {
             return self.textures.get(&name.0).copied().unwrap_or(Id::from_index(0));
         }
         let (pattern, size) = self.pattern(texture);
-        let translate = texture.translate.as_ref().map_or([0.0; 3], |translate| translate.value);
+        let translate = texture.translate.as_ref().map(|translate| translate.value);
         let placement = self.placement(texture.scale.as_ref(), texture.rotate.as_ref(), translate);
         let space_from_texture = placement * Transform::scale(Vector3::new(size, size, size));
         let default_space = if texture.image.is_some() { TextureSpace::Uv } else { TextureSpace::Object };
