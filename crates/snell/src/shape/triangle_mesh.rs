@@ -120,7 +120,11 @@ impl TriangleMesh {
             return Err(MeshError::NoSuchVertex(triangle));
         }
         let corners = |triangle: u32| mesh.triangles[triangle as usize].map(|vertex| mesh.positions[vertex as usize]);
-        let bvh = Bvh::over_triangles(mesh.triangles.len(), corners, BuildOptions { block: BLOCK })?;
+        let bvh = Bvh::over_triangles(
+            mesh.triangles.len(),
+            corners,
+            BuildOptions { block: BLOCK, ..BuildOptions::default() },
+        )?;
         Ok(Self {
             positions: mesh.positions.clone(),
             triangles: mesh.triangles.clone(),

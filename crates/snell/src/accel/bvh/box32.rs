@@ -41,6 +41,16 @@ impl Box32 {
         Bounds3::new(min, max)
     }
 
+    /// What is in both boxes.
+    pub(super) fn common(&self, other: &Self) -> Self {
+        let [[low, high], [other_low, other_high]] = [self.corners, other.corners];
+        let corners = [
+            [0, 1, 2].map(|axis| larger(low[axis], other_low[axis])),
+            [0, 1, 2].map(|axis| smaller(high[axis], other_high[axis])),
+        ];
+        Self { corners }
+    }
+
     /// Half the surface area, in `f64` so that it does not overflow; 0 where empty.
     #[inline]
     pub(super) fn half_area(&self) -> f64 {

@@ -11,6 +11,8 @@ use snell_math::Bounds3;
 use super::box32::Box32;
 use super::item::{Hull, Item, hulls};
 use super::partition::{partition, partition_many};
+use super::places::Places;
+use super::presplit::presplit;
 use super::split::{CHUNK, Split, best_split, best_split_of_many, median_split};
 use super::subtree::{Part, Subtree};
 use super::{Bvh, MAX_DEPTH, MAX_LEAF, Node};
@@ -24,8 +26,8 @@ const PARALLEL_PARTITION: usize = 1 << 16;
 /// So many primitives may share a leaf even where they are tested one by one.
 const SMALL_LEAF: usize = 4;
 
-/// The most boxes a hierarchy is built over: with more, nodes could not be counted in 32 bits.
-const MAX_PRIMITIVES: usize = 1 << 31;
+/// The most boxes and pieces a hierarchy is built over: with more, nodes could not be counted in 32 bits.
+pub(super) const MAX_PRIMITIVES: usize = 1 << 31;
 
 /// Why a hierarchy cannot be built. The caller is to blame, or the scene he was given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -46,12 +48,15 @@ pub enum BuildError {
 pub struct BuildOptions {
     /// How many primitives are tested at once, at the cost of one, between 1 and 8: leaves are then filled up to so many.
     pub block: usize,
+    /// Triangles that are large, or long and across the axes, are cut in pieces that may be in several leaves. Rays meet them
+    /// sooner, but a hierarchy that is refitted loses that, and more.
+    pub presplit: bool,
 }
 
 impl Default for BuildOptions {
-    /// Primitives are tested one by one.
+    /// Primitives are tested one by one, and triangles may be cut.
     fn default() -> Self {
-        Self { block: 1 }
+        Self { block: 1, presplit: true }
     }
 }
 
@@ -72,7 +77,9 @@ impl Bvh {
             let bounds = if b.is_empty() { Box32::EMPTY } else { Box32::enclosing(b) };
             Item::new(&bounds, i as u32)
         };
-        Ok(Self::over_items(bounds.par_iter().enumerate().map(item).collect(), BuildOptions::default()))
+        let mut items = bounds.par_iter().enumerate().map(item).collect();
+        retain_filled(&mut items);
+        Ok(Self::over_items(items, BuildOptions::default()))
     }
 
     /// Builds a hierarchy over triangles, known from here on by their number, which is less than `count`. One with two
@@ -94,24 +101,31 @@ impl Bvh {
             let is_met = a != b && b != c && c != a && bounds.is_finite();
             Item::new(if is_met { &bounds } else { &Box32::EMPTY }, i)
         };
-        Ok(Self::over_items((0..count as u32).into_par_iter().map(item).collect(), options))
+        let mut items: Vec<Item> = (0..count as u32).into_par_iter().map(item).collect();
+        retain_filled(&mut items);
+        let repeated = if options.presplit { presplit(&mut items, corners) } else { Vec::new() };
+        Ok(Self { repeated: Places::new(count, &repeated), ..Self::over_items(items, options) })
     }
 
-    /// Builds it over items, the empty ones left out.
+    /// Builds it over items, none of them empty.
     fn over_items(mut items: Vec<Item>, options: BuildOptions) -> Self {
-        if items.par_iter().any(Item::is_empty) {
-            items.retain(|item| !item.is_empty());
-        }
         let block = options.block.clamp(1, MAX_LEAF);
         if items.is_empty() {
-            return Self { nodes: Vec::new(), primitives: Vec::new(), extent: 0.0, block };
+            return Self { block, ..Self::default() };
         }
         let [bounds, centers] = hulls_of_many(&items);
         // Every cut copies a set from the one list to the other.
         let mut scratch: Vec<Item> = items.par_iter().copied().collect();
         let set = Set { items: &mut items, scratch: &mut scratch, bounds, centers };
         let Subtree { nodes, primitives } = Builder { block }.build(set, 0).gather();
-        Self { nodes, primitives, extent: bounds.to_box().max_abs(), block }
+        Self { nodes, primitives, extent: bounds.to_box().max_abs(), block, ..Self::default() }
+    }
+}
+
+/// Leaves out items without a box, which are few.
+fn retain_filled(items: &mut Vec<Item>) {
+    if items.par_iter().any(Item::is_empty) {
+        items.retain(|item| !item.is_empty());
     }
 }
 
@@ -126,7 +140,7 @@ fn refuse(primitive: u32, bounds: &Bounds3) -> Option<BuildError> {
 }
 
 /// The boxes of [`hulls`] by several threads.
-fn hulls_of_many(items: &[Item]) -> [Hull; 2] {
+pub(super) fn hulls_of_many(items: &[Item]) -> [Hull; 2] {
     items.par_chunks(CHUNK).map(hulls).reduce(|| [Hull::EMPTY; 2], |a, b| [a[0].union(&b[0]), a[1].union(&b[1])])
 }
 

@@ -34,6 +34,11 @@ impl Item {
         upper << 16 | lower
     }
 
+    #[inline]
+    pub(super) fn bounds(&self) -> Box32 {
+        Hull { low: self.low, high: self.high }.to_box()
+    }
+
     pub(super) fn is_empty(&self) -> bool {
         let ([a, b, c, _], [d, e, f, _]) = (self.low.to_array(), self.high.to_array());
         a > d || b > e || c > f

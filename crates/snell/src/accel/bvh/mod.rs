@@ -9,8 +9,11 @@
 
 mod box32;
 mod build;
+mod clip;
 mod item;
 mod partition;
+mod places;
+mod presplit;
 mod split;
 mod subtree;
 mod traverse;
@@ -24,6 +27,7 @@ pub use traverse::Candidate;
 pub use validate::Defect;
 
 use box32::Box32;
+use places::Places;
 use snell_math::Bounds3;
 
 /// The most primitives a leaf holds, and are tested at once.
@@ -48,7 +52,7 @@ const MAX_DEPTH: usize = 64;
 /// assert_eq!(hit, Some((0, 2.0)));
 /// # Ok::<(), snell::accel::BuildError>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Default)]
 pub struct Bvh {
     /// Depth first: the first child of an inner node follows it at once. Empty where there is no primitive.
     nodes: Vec<Node>,
@@ -58,6 +62,8 @@ pub struct Bvh {
     extent: f64,
     /// How many primitives are tested at once, at the cost of one.
     block: usize,
+    /// The primitives that may be in several leaves, cut in pieces, each leaf having the box of its pieces.
+    repeated: Places,
 }
 
 /// A node, 32 bytes so that none lies across two cache lines.
@@ -94,11 +100,11 @@ pub struct Statistics {
     pub nodes: usize,
     /// How many leaves.
     pub leaves: usize,
-    /// How many primitives the leaves refer to, those with an empty box left out.
+    /// How many primitives the leaves refer to, those with an empty box left out, and those in several leaves once for each.
     pub primitives: usize,
     /// The depth of the deepest leaf; a lone root has depth 0.
     pub depth: usize,
-    /// The memory of nodes and primitive references, in bytes.
+    /// The memory of all that belongs to it, in bytes.
     pub bytes: usize,
     /// The expected number of steps of a random line that meets the root's box, by the surface area heuristic: a node
     /// visited counts 1, a block of primitives tested counts 1.
@@ -116,9 +122,9 @@ impl Bvh {
         self.nodes.is_empty()
     }
 
-    /// The memory of nodes and primitive references.
+    /// The memory it takes, in bytes.
     pub fn bytes(&self) -> usize {
-        size_of_val(self.nodes.as_slice()) + size_of_val(self.primitives.as_slice())
+        size_of_val(self.nodes.as_slice()) + size_of_val(self.primitives.as_slice()) + self.repeated.bytes()
     }
 
     /// Counts nodes and estimates the cost of a ray.

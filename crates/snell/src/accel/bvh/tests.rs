@@ -119,8 +119,10 @@ fn triangles_give_the_same_tree_from_any_number_of_threads() {
     let triangles = quantised_triangles(100_000, &mut Random(12));
     let build = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        pool.install(|| Bvh::over_triangles(triangles.len(), |i| triangles[i as usize], BuildOptions { block: 8 }))
-            .expect("not too many")
+        pool.install(|| {
+            Bvh::over_triangles(triangles.len(), |i| triangles[i as usize], BuildOptions { block: 8, presplit: false })
+        })
+        .expect("not too many")
     };
     let one = build(1);
     assert_eq!(one.validate(&boxes_of(&triangles)), Ok(()));
@@ -132,7 +134,8 @@ fn triangles_give_the_same_tree_from_any_number_of_threads() {
 fn blocks_are_filled() {
     let triangles = quantised_triangles(20_000, &mut Random(13));
     let build = |block| {
-        Bvh::over_triangles(triangles.len(), |i| triangles[i as usize], BuildOptions { block }).expect("not too many")
+        Bvh::over_triangles(triangles.len(), |i| triangles[i as usize], BuildOptions { block, presplit: false })
+            .expect("not too many")
     };
     let [one, four, eight, most] = [1, 4, 8, 100].map(|block| build(block).statistics());
     assert_eq!(eight, most);
@@ -152,7 +155,8 @@ fn triangles_that_cannot_be_met_are_left_out() {
     let good = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, -0.0]];
     let with = |corner: [f32; 3]| [good[0], good[1], corner];
     let triangles = [with([f32::NAN; 3]), good, with(good[1]), with([0.0, f32::INFINITY, 0.0]), with([3.0, 4.0, -5.0])];
-    let bvh = Bvh::over_triangles(5, |i| triangles[i as usize], BuildOptions { block: 8 }).expect("not too many");
+    let bvh = Bvh::over_triangles(5, |i| triangles[i as usize], BuildOptions { block: 8, presplit: false })
+        .expect("not too many");
     assert_eq!(bvh.primitives, [1, 4]);
     assert_eq!(bvh.bounds(), Bounds3::new(Point3::new(0.0, 0.0, -5.0), Point3::new(3.0, 4.0, 0.0)));
     let none = Bvh::over_triangles(0, |_| good, BuildOptions::default()).expect("not too many");
@@ -434,7 +438,7 @@ fn a_tree_that_is_too_deep_is_caught() {
     let node = |link, count| Node { bounds: Box32::enclosing(&bounds[0]), link, count };
     let mut nodes: Vec<Node> = (0..depth as u32).flat_map(|i| [node(2, 0), node(i, 1)]).collect();
     nodes.push(node(depth as u32, 1));
-    let bvh = Bvh { nodes, primitives: (0..=depth as u32).collect(), extent: 1.0, block: 1 };
+    let bvh = Bvh { nodes, primitives: (0..=depth as u32).collect(), extent: 1.0, block: 1, ..Bvh::default() };
     assert!(matches!(bvh.validate(&bounds), Err(Defect::TooDeep(_))));
 }
 
