@@ -8,4 +8,4 @@ pub mod bvh;
 #[cfg(test)]
 pub(crate) mod random;
 
-pub use bvh::{BuildError, Bvh, Candidate, Defect, Statistics};
+pub use bvh::{BuildError, BuildOptions, Bvh, Candidate, Defect, Statistics};

@@ -12,13 +12,17 @@ mod tests;
 
 use std::ops::ControlFlow;
 
+use rayon::prelude::*;
 use snell_math::{Bounds3, Normal3, Point3, Ray, Rgb, Vector3};
 use snell_scene::scene::Mesh;
 
 use super::SurfacePoint;
-use crate::accel::{BuildError, Bvh};
+use crate::accel::{BuildError, BuildOptions, Bvh};
 pub use topology::{EdgeFaces, MeshEdge};
 use watertight::{Meeting, RaySpace};
+
+/// How many triangles are tested at once.
+const BLOCK: usize = 8;
 
 /// Triangles over shared vertices, ready to be met by rays. Front faces are counter-clockwise.
 ///
@@ -108,21 +112,19 @@ impl TriangleMesh {
                 return Err(MeshError::WrongLength { what, found, expected });
             }
         }
-        if let Some(vertex) = mesh.positions.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
+        if let Some(vertex) = mesh.positions.par_iter().position_first(|p| !p.iter().all(|x| x.is_finite())) {
             return Err(MeshError::NotFinite(vertex));
         }
-        if let Some(triangle) = mesh.triangles.iter().position(|t| t.iter().any(|&v| v as usize >= vertices)) {
+        if let Some(triangle) = mesh.triangles.par_iter().position_first(|t| t.iter().any(|&v| v as usize >= vertices))
+        {
             return Err(MeshError::NoSuchVertex(triangle));
         }
-        let boxes: Vec<Bounds3> = mesh
-            .triangles
-            .iter()
-            .map(|triangle| {
-                let corners @ [a, b, c] = triangle.map(|vertex| point(mesh.positions[vertex as usize]));
-                let collapsed = a == b || b == c || c == a;
-                if collapsed { Bounds3::EMPTY } else { corners.iter().fold(Bounds3::EMPTY, |b, p| b.including(*p)) }
-            })
-            .collect();
+        let corners = |triangle: u32| mesh.triangles[triangle as usize].map(|vertex| mesh.positions[vertex as usize]);
+        let bvh = Bvh::over_triangles(
+            mesh.triangles.len(),
+            corners,
+            BuildOptions { block: BLOCK, ..BuildOptions::default() },
+        )?;
         Ok(Self {
             positions: mesh.positions.clone(),
             triangles: mesh.triangles.clone(),
@@ -130,8 +132,8 @@ impl TriangleMesh {
             uvs: mesh.uvs.clone(),
             colors: mesh.colors.clone(),
             triangle_materials: mesh.triangle_materials.clone(),
-            bvh: Bvh::build(&boxes)?,
-            bounds: boxes.iter().fold(Bounds3::EMPTY, |all, b| all.union(b)),
+            bounds: bvh.bounds(),
+            bvh,
         })
     }
 
@@ -301,7 +303,7 @@ impl TriangleMesh {
             + size_of_val(self.uvs.as_slice())
             + size_of_val(self.colors.as_slice())
             + size_of_val(self.triangle_materials.as_slice())
-            + self.bvh.statistics().bytes
+            + self.bvh.bytes()
     }
 
     #[inline]

@@ -22,23 +22,33 @@ impl Box32 {
         Self { corners: [low, high] }
     }
 
+    /// The box around the corners of a triangle.
+    #[inline]
+    pub(super) fn around([a, b, c]: &[[f32; 3]; 3]) -> Self {
+        // As in `enclosing`, no corner of the box is −0.
+        let low = [0, 1, 2].map(|axis| smaller(smaller(a[axis], b[axis]), c[axis]) + 0.0);
+        let high = [0, 1, 2].map(|axis| larger(larger(a[axis], b[axis]), c[axis]) + 0.0);
+        Self { corners: [low, high] }
+    }
+
+    #[inline]
+    pub(super) fn is_finite(&self) -> bool {
+        self.corners.iter().flatten().all(|x| x.is_finite())
+    }
+
     pub(super) fn to_bounds(self) -> Bounds3 {
         let [min, max] = self.corners.map(|corner| Point3::from(corner.map(f64::from)));
         Bounds3::new(min, max)
     }
 
-    #[inline]
-    pub(super) fn grow(&mut self, other: &Self) {
-        for axis in 0..3 {
-            self.corners[0][axis] = smaller(self.corners[0][axis], other.corners[0][axis]);
-            self.corners[1][axis] = larger(self.corners[1][axis], other.corners[1][axis]);
-        }
-    }
-
-    #[inline]
-    pub(super) fn union(mut self, other: &Self) -> Self {
-        self.grow(other);
-        self
+    /// What is in both boxes.
+    pub(super) fn common(&self, other: &Self) -> Self {
+        let [[low, high], [other_low, other_high]] = [self.corners, other.corners];
+        let corners = [
+            [0, 1, 2].map(|axis| larger(low[axis], other_low[axis])),
+            [0, 1, 2].map(|axis| smaller(high[axis], other_high[axis])),
+        ];
+        Self { corners }
     }
 
     /// Half the surface area, in `f64` so that it does not overflow; 0 where empty.
@@ -76,12 +86,12 @@ fn round_down(x: f64) -> f32 {
 // `f32::min` and `f32::max` take care of NaN, which there is none of here, at the price of four instructions for one.
 
 #[inline]
-pub(super) fn smaller(a: f32, b: f32) -> f32 {
+fn smaller(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
 #[inline]
-pub(super) fn larger(a: f32, b: f32) -> f32 {
+fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 

@@ -9,18 +9,25 @@ use rayon::prelude::*;
 use snell_math::Bounds3;
 
 use super::box32::Box32;
-use super::split::{Item, best_split, bounds_of, median_split};
+use super::item::{Hull, Item, hulls};
+use super::partition::{partition, partition_many};
+use super::places::Places;
+use super::presplit::presplit;
+use super::split::{CHUNK, Split, best_split, best_split_of_many, median_split};
+use super::subtree::{Part, Subtree};
 use super::{Bvh, MAX_DEPTH, MAX_LEAF, Node};
 
 /// From how many items on the two parts of a set are built by different threads.
-const PARALLEL_ITEMS: usize = 1 << 12;
+const PARALLEL_ITEMS: usize = 1 << 13;
 
-/// From how many items on a set is cut in two by several threads, and in what portions.
+/// From how many items on a set is cut in two by several threads.
 const PARALLEL_PARTITION: usize = 1 << 16;
-const CHUNK: usize = 1 << 13;
 
-/// The most boxes a hierarchy is built over: with more, nodes could not be counted in 32 bits.
-const MAX_PRIMITIVES: usize = 1 << 31;
+/// So many primitives may share a leaf even where they are tested one by one.
+const SMALL_LEAF: usize = 4;
+
+/// The most boxes and pieces a hierarchy is built over: with more, nodes could not be counted in 32 bits.
+pub(super) const MAX_PRIMITIVES: usize = 1 << 31;
 
 /// Why a hierarchy cannot be built. The caller is to blame, or the scene he was given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -36,6 +43,23 @@ pub enum BuildError {
     TooMany(usize),
 }
 
+/// What the builder should know about how the hierarchy is used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BuildOptions {
+    /// How many primitives are tested at once, at the cost of one, between 1 and 8: leaves are then filled up to so many.
+    pub block: usize,
+    /// Triangles that are large, or long and across the axes, are cut in pieces that may be in several leaves. Rays meet them
+    /// sooner, but a hierarchy that is refitted loses that, and more.
+    pub presplit: bool,
+}
+
+impl Default for BuildOptions {
+    /// Primitives are tested one by one, and triangles may be cut.
+    fn default() -> Self {
+        Self { block: 1, presplit: true }
+    }
+}
+
 impl Bvh {
     /// Builds a hierarchy over primitives, known from here on by their place in `bounds`. An empty box is left out: no
     /// query reports its primitive.
@@ -49,23 +73,59 @@ impl Bvh {
         if let Some(error) = bounds.par_iter().enumerate().find_map_first(|(i, b)| refuse(i as u32, b)) {
             return Err(error);
         }
-        let mut items: Vec<Item> = bounds
-            .par_iter()
-            .enumerate()
-            .filter(|(_, b)| !b.is_empty())
-            .map(|(i, b)| Item { bounds: Box32::enclosing(b), primitive: i as u32 })
-            .collect();
-        if items.is_empty() {
-            return Ok(Self { nodes: Vec::new(), primitives: Vec::new(), extent: 0.0 });
+        let item = |(i, b): (usize, &Bounds3)| {
+            let bounds = if b.is_empty() { Box32::EMPTY } else { Box32::enclosing(b) };
+            Item::new(&bounds, i as u32)
+        };
+        let mut items = bounds.par_iter().enumerate().map(item).collect();
+        retain_filled(&mut items);
+        Ok(Self::over_items(items, BuildOptions::default()))
+    }
+
+    /// Builds a hierarchy over triangles, known from here on by their number, which is less than `count`. One with two
+    /// equal corners is left out: no query reports it, as none reports one whose box is not finite.
+    ///
+    /// # Errors
+    /// Where there are more than 2³¹ triangles.
+    pub fn over_triangles(
+        count: usize,
+        corners: impl Fn(u32) -> [[f32; 3]; 3] + Sync,
+        options: BuildOptions,
+    ) -> Result<Self, BuildError> {
+        if count > MAX_PRIMITIVES {
+            return Err(BuildError::TooMany(count));
         }
-        let mut scratch = if items.len() < PARALLEL_PARTITION { Vec::new() } else { items.clone() };
-        let mut primitives = vec![0; items.len()];
-        let mut nodes = Vec::with_capacity(items.len());
-        let bounds = bounds_of(&items);
-        let set = Set { items: &mut items, scratch: &mut scratch, primitives: &mut primitives, first: 0 };
-        build_subtree(set, bounds, 0, &mut nodes);
-        nodes.shrink_to_fit();
-        Ok(Self { nodes, primitives, extent: bounds.max_abs() })
+        let item = |i: u32| {
+            let corners @ [a, b, c] = corners(i);
+            let bounds = Box32::around(&corners);
+            let is_met = a != b && b != c && c != a && bounds.is_finite();
+            Item::new(if is_met { &bounds } else { &Box32::EMPTY }, i)
+        };
+        let mut items: Vec<Item> = (0..count as u32).into_par_iter().map(item).collect();
+        retain_filled(&mut items);
+        let repeated = if options.presplit { presplit(&mut items, corners) } else { Vec::new() };
+        Ok(Self { repeated: Places::new(count, &repeated), ..Self::over_items(items, options) })
+    }
+
+    /// Builds it over items, none of them empty.
+    fn over_items(mut items: Vec<Item>, options: BuildOptions) -> Self {
+        let block = options.block.clamp(1, MAX_LEAF);
+        if items.is_empty() {
+            return Self { block, ..Self::default() };
+        }
+        let [bounds, centers] = hulls_of_many(&items);
+        // Every cut copies a set from the one list to the other.
+        let mut scratch: Vec<Item> = items.par_iter().copied().collect();
+        let set = Set { items: &mut items, scratch: &mut scratch, bounds, centers };
+        let Subtree { nodes, primitives } = Builder { block }.build(set, 0).gather();
+        Self { nodes, primitives, extent: bounds.to_box().max_abs(), block, ..Self::default() }
+    }
+}
+
+/// Leaves out items without a box, which are few.
+fn retain_filled(items: &mut Vec<Item>) {
+    if items.par_iter().any(Item::is_empty) {
+        items.retain(|item| !item.is_empty());
     }
 }
 
@@ -79,132 +139,112 @@ fn refuse(primitive: u32, bounds: &Bounds3) -> Option<BuildError> {
     }
 }
 
-/// The items of one subtree and where its leaves' primitives go.
+/// The boxes of [`hulls`] by several threads.
+pub(super) fn hulls_of_many(items: &[Item]) -> [Hull; 2] {
+    items.par_chunks(CHUNK).map(hulls).reduce(|| [Hull::EMPTY; 2], |a, b| [a[0].union(&b[0]), a[1].union(&b[1])])
+}
+
+/// The items of one subtree.
 struct Set<'a> {
     items: &'a mut [Item],
-    /// As long as `items` while these are many enough for a parallel partition, else of any length.
+    /// As long as `items`.
     scratch: &'a mut [Item],
-    primitives: &'a mut [u32],
-    /// The place of `primitives[0]` in the whole list.
-    first: u32,
+    /// Around the items' boxes.
+    bounds: Hull,
+    /// Around their half centres.
+    centers: Hull,
 }
 
 impl<'a> Set<'a> {
-    /// The sets of the first `count` items and of the rest.
-    fn split_at(self, count: usize) -> [Set<'a>; 2] {
-        let (left, right) = self.items.split_at_mut(count);
-        let (left_scratch, right_scratch) = self.scratch.split_at_mut(count.min(self.scratch.len()));
-        let (left_primitives, right_primitives) = self.primitives.split_at_mut(count);
-        [
-            Set { items: left, scratch: left_scratch, primitives: left_primitives, first: self.first },
-            Set {
-                items: right,
-                scratch: right_scratch,
-                primitives: right_primitives,
-                first: self.first + count as u32,
-            },
-        ]
-    }
-
-    /// Brings the items for which `is_first` holds to the front; returns the set and their number.
-    fn partition(self, is_first: impl Fn(&Item) -> bool + Sync) -> (Self, usize) {
-        if self.items.len() < PARALLEL_PARTITION {
-            let count = partition_in_place(self.items, is_first);
-            (self, count)
-        } else {
-            let count = partition_into(self.items, self.scratch, is_first);
-            (Set { items: self.scratch, scratch: self.items, ..self }, count)
-        }
-    }
-}
-
-/// Appends the nodes of a subtree, its root first.
-fn build_subtree(set: Set, bounds: Box32, depth: usize, nodes: &mut Vec<Node>) {
-    let count = set.items.len();
-    let levels_of_halving = count.next_power_of_two().trailing_zeros() as usize;
-    let may_choose = depth + 1 + levels_of_halving <= MAX_DEPTH;
-    let split = if count > 1 && may_choose { best_split(set.items, &bounds) } else { None };
-    if count <= MAX_LEAF && split.is_none_or(|split| count as f64 <= split.cost) {
-        for (place, item) in set.primitives.iter_mut().zip(set.items.iter()) {
-            *place = item.primitive;
-        }
-        set.primitives.sort_unstable();
-        nodes.push(Node { bounds, link: set.first, count: count as u32 });
-        return;
-    }
-
-    let (set, first_count, boxes) = match split {
-        Some(split) => {
-            let (set, first_count) = set.partition(|item| split.is_first(item));
-            (set, first_count, split.boxes)
-        }
-        None => {
-            let half = median_split(set.items);
-            let boxes = [bounds_of(&set.items[..half]), bounds_of(&set.items[half..])];
-            (set, half, boxes)
-        }
-    };
-    let [left, right] = set.split_at(first_count);
-    let [mut first, mut second] = [(left, boxes[0]), (right, boxes[1])];
-    // The larger child comes first: a query for any hit, which takes the children as they come, is then more likely to
-    // find one soon (Nah and Manocha, "SATO: Surface Area Traversal Order for Shadow Ray Tracing", CGF 33(6), 2014).
-    if boxes[1].half_area() > boxes[0].half_area() {
-        std::mem::swap(&mut first, &mut second);
-    }
-
-    let place = nodes.len();
-    nodes.push(Node { bounds, link: 0, count: 0 });
-    if count < PARALLEL_ITEMS {
-        build_subtree(first.0, first.1, depth + 1, nodes);
-        nodes[place].link = (nodes.len() - place) as u32;
-        build_subtree(second.0, second.1, depth + 1, nodes);
-    } else {
-        // Links are relative, so that a subtree built elsewhere is appended as it is.
-        let mut second_nodes = Vec::new();
-        rayon::join(
-            || build_subtree(first.0, first.1, depth + 1, nodes),
-            || build_subtree(second.0, second.1, depth + 1, &mut second_nodes),
-        );
-        nodes[place].link = (nodes.len() - place) as u32;
-        nodes.append(&mut second_nodes);
-    }
-}
-
-fn partition_in_place(items: &mut [Item], is_first: impl Fn(&Item) -> bool) -> usize {
-    let (mut low, mut high) = (0, items.len());
-    while low < high {
-        if is_first(&items[low]) {
-            low += 1;
-        } else {
-            high -= 1;
-            items.swap(low, high);
-        }
-    }
-    low
-}
-
-/// Copies the items to `target`, those for which `is_first` holds to its front, portion by portion in parallel.
-fn partition_into(items: &[Item], target: &mut [Item], is_first: impl Fn(&Item) -> bool + Sync) -> usize {
-    let counts: Vec<usize> =
-        items.par_chunks(CHUNK).map(|chunk| chunk.iter().filter(|item| is_first(item)).count()).collect();
-    let first_count = counts.iter().sum();
-    // Every portion gets a slice of its own in both parts.
-    let (mut front, mut back) = target.split_at_mut(first_count);
-    let mut jobs = Vec::with_capacity(counts.len());
-    for (chunk, count) in items.chunks(CHUNK).zip(counts) {
-        let (mine_in_front, front_rest) = front.split_at_mut(count);
-        let (mine_in_back, back_rest) = back.split_at_mut(chunk.len() - count);
-        jobs.push((chunk, mine_in_front, mine_in_back));
-        (front, back) = (front_rest, back_rest);
-    }
-    jobs.into_par_iter().for_each(|(chunk, front, back)| {
-        let (mut front, mut back) = (front.iter_mut(), back.iter_mut());
-        for item in chunk {
-            let place = if is_first(item) { front.next() } else { back.next() };
-            if let Some(place) = place {
-                *place = *item;
+    /// Cuts it where the heuristic says, or else in halves. The part that is more likely to be met comes first: a query for
+    /// any hit, which takes the children as they come, is then more likely to find one soon (Nah and Manocha, "SATO:
+    /// Surface Area Traversal Order for Shadow Ray Tracing", CGF 33(6), 2014).
+    fn cut(self, split: Option<Chosen>) -> [Set<'a>; 2] {
+        let Set { items, scratch, centers, .. } = self;
+        let (items, scratch, count, boxes, centers) = match split {
+            Some(Chosen { split, counts }) => {
+                let (count, centers) = match counts {
+                    None => partition(items, scratch, &split),
+                    Some(counts) => partition_many(items, scratch, &split, &counts),
+                };
+                (scratch, items, count, split.boxes, centers)
             }
+            None => {
+                let half = median_split(items, &centers);
+                let [[a, b], [c, d]] = [hulls(&items[..half]), hulls(&items[half..])];
+                (items, scratch, half, [a, c], [b, d])
+            }
+        };
+        let (left, right) = items.split_at_mut(count);
+        let (left_scratch, right_scratch) = scratch.split_at_mut(count);
+        let left = Set { items: left, scratch: left_scratch, bounds: boxes[0], centers: centers[0] };
+        let right = Set { items: right, scratch: right_scratch, bounds: boxes[1], centers: centers[1] };
+        if right.bounds.half_area() > left.bounds.half_area() { [right, left] } else { [left, right] }
+    }
+}
+
+/// A split, and for a set that threads cut together how many items of each portion belong to the first part.
+struct Chosen {
+    split: Split,
+    counts: Option<Vec<usize>>,
+}
+
+struct Builder {
+    /// How many primitives are tested at once.
+    block: usize,
+}
+
+impl Builder {
+    /// Builds a subtree by several threads, if it is large.
+    fn build(&self, set: Set, depth: usize) -> Part {
+        if set.items.len() < PARALLEL_ITEMS {
+            // Leaves are half full, or fuller.
+            let leaves = 2 * set.items.len() / self.block.max(2);
+            let nodes = Vec::with_capacity(2 * leaves);
+            let mut subtree = Subtree { nodes, primitives: Vec::with_capacity(set.items.len()) };
+            self.append(set, depth, &mut subtree);
+            return Part::Whole(subtree);
         }
-    });
-    first_count
+        let chosen = if !may_choose(set.items.len(), depth) {
+            None
+        } else if set.items.len() < PARALLEL_PARTITION {
+            self.choose(&set)
+        } else {
+            best_split_of_many(set.items, &set.bounds, &set.centers, self.block)
+                .map(|(split, counts)| Chosen { split, counts: Some(counts) })
+        };
+        let bounds = set.bounds.to_box();
+        let [first, second] = set.cut(chosen);
+        let (first, second) = rayon::join(|| self.build(first, depth + 1), || self.build(second, depth + 1));
+        Part::join(bounds, [first, second])
+    }
+
+    /// Appends the nodes of a subtree, its root first.
+    fn append(&self, set: Set, depth: usize, subtree: &mut Subtree) {
+        let count = set.items.len();
+        // One block costs no more than a visit to the node that would divide it.
+        let chosen = if count <= self.block || !may_choose(count, depth) { None } else { self.choose(&set) };
+        let cost = count.div_ceil(self.block) as f64;
+        let bounds = set.bounds.to_box();
+        if count <= self.block.max(SMALL_LEAF) && chosen.as_ref().is_none_or(|chosen| cost <= chosen.split.cost) {
+            subtree.push_leaf(bounds, set.items.iter().map(Item::primitive));
+            return;
+        }
+        let [first, second] = set.cut(chosen);
+        let place = subtree.nodes.len();
+        subtree.nodes.push(Node { bounds, link: 0, count: 0 });
+        self.append(first, depth + 1, subtree);
+        subtree.nodes[place].link = (subtree.nodes.len() - place) as u32;
+        self.append(second, depth + 1, subtree);
+    }
+
+    fn choose(&self, set: &Set) -> Option<Chosen> {
+        best_split(set.items, &set.bounds, &set.centers, self.block).map(|split| Chosen { split, counts: None })
+    }
+}
+
+/// Whether a set may be cut where the heuristic says, or must be halved to keep within the depth.
+fn may_choose(count: usize, depth: usize) -> bool {
+    let levels_of_halving = count.next_power_of_two().trailing_zeros() as usize;
+    depth + 1 + levels_of_halving <= MAX_DEPTH
 }

@@ -9,22 +9,29 @@
 
 mod box32;
 mod build;
+mod clip;
+mod item;
+mod partition;
+mod places;
+mod presplit;
 mod split;
+mod subtree;
 mod traverse;
 mod validate;
 
 #[cfg(test)]
 mod tests;
 
-pub use build::BuildError;
+pub use build::{BuildError, BuildOptions};
 pub use traverse::Candidate;
 pub use validate::Defect;
 
 use box32::Box32;
+use places::Places;
 use snell_math::Bounds3;
 
-/// The most primitives a leaf holds.
-const MAX_LEAF: usize = 4;
+/// The most primitives a leaf holds, and are tested at once.
+const MAX_LEAF: usize = 8;
 
 /// The depth of the deepest leaf, the root being at depth 0, is at most this; the builder takes care of it (see
 /// [`build`]), and the traversal's stack, which holds one node a level at most, is this long.
@@ -45,7 +52,7 @@ const MAX_DEPTH: usize = 64;
 /// assert_eq!(hit, Some((0, 2.0)));
 /// # Ok::<(), snell::accel::BuildError>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Default)]
 pub struct Bvh {
     /// Depth first: the first child of an inner node follows it at once. Empty where there is no primitive.
     nodes: Vec<Node>,
@@ -53,6 +60,10 @@ pub struct Bvh {
     primitives: Vec<u32>,
     /// The largest absolute coordinate of the root's box: what the rounding error of a box test scales with.
     extent: f64,
+    /// How many primitives are tested at once, at the cost of one.
+    block: usize,
+    /// The primitives that may be in several leaves, cut in pieces, each leaf having the box of its pieces.
+    repeated: Places,
 }
 
 /// A node, 32 bytes so that none lies across two cache lines.
@@ -89,14 +100,14 @@ pub struct Statistics {
     pub nodes: usize,
     /// How many leaves.
     pub leaves: usize,
-    /// How many primitives, those with an empty box left out.
+    /// How many primitives the leaves refer to, those with an empty box left out, and those in several leaves once for each.
     pub primitives: usize,
     /// The depth of the deepest leaf; a lone root has depth 0.
     pub depth: usize,
-    /// The memory of nodes and primitive references, in bytes.
+    /// The memory of all that belongs to it, in bytes.
     pub bytes: usize,
     /// The expected number of steps of a random line that meets the root's box, by the surface area heuristic: a node
-    /// visited counts 1, a primitive tested counts 1.
+    /// visited counts 1, a block of primitives tested counts 1.
     pub sah_cost: f64,
 }
 
@@ -111,12 +122,17 @@ impl Bvh {
         self.nodes.is_empty()
     }
 
+    /// The memory it takes, in bytes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.nodes.as_slice()) + size_of_val(self.primitives.as_slice()) + self.repeated.bytes()
+    }
+
     /// Counts nodes and estimates the cost of a ray.
     pub fn statistics(&self) -> Statistics {
         let mut statistics = Statistics {
             nodes: self.nodes.len(),
             primitives: self.primitives.len(),
-            bytes: size_of_val(self.nodes.as_slice()) + size_of_val(self.primitives.as_slice()),
+            bytes: self.bytes(),
             ..Statistics::default()
         };
         let Some(root) = self.nodes.first() else { return statistics };
@@ -126,7 +142,8 @@ impl Bvh {
             let node = &self.nodes[index];
             // A line that meets a box without area, as one of collinear points, meets every box inside.
             let share = node.bounds.half_area() / root_area;
-            statistics.sah_cost += if share.is_finite() { share } else { 1.0 } * (1 + node.count) as f64;
+            statistics.sah_cost +=
+                if share.is_finite() { share } else { 1.0 } * (1 + node.range().len().div_ceil(self.block)) as f64;
             statistics.depth = statistics.depth.max(depth);
             if node.is_leaf() {
                 statistics.leaves += 1;

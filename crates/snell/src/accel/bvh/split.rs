@@ -1,14 +1,16 @@
 //! Where to cut a set of primitives in two: the binned surface area heuristic, with the object median to fall back on.
 //!
-//! Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", IEEE RT 2007. What is chosen depends on the set
-//! alone, not on the order of its items: minima, maxima and counts are exact, and ties go to the lower axis and bin.
+//! Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", IEEE RT 2007; all three axes are binned at once.
+//! What is chosen depends on the set alone, not on the order of its items: minima, maxima and counts are exact, and ties
+//! go to the lower axis and bin.
 
 use rayon::prelude::*;
+use wide::f32x4;
 
-use super::box32::{Box32, larger, smaller};
+use super::item::{Hull, Item};
 
-/// The cost of visiting a node, where testing a primitive costs 1. Measured with triangles: half of it traces 5 % faster
-/// and takes a third more memory, twice of it is 5 % slower and takes a third less.
+/// The cost of visiting a node, where testing a block of primitives costs 1. Measured with triangles: half of it traces
+/// 5 % faster and takes a third more memory, twice of it is 5 % slower and takes a third less.
 const TRAVERSAL_COST: f64 = 1.0;
 
 /// The most bins an axis.
@@ -20,34 +22,15 @@ fn bins_for(items: usize) -> usize {
     (4 + items / 2).min(BINS)
 }
 
-/// From how many items on one node's binning is shared among threads, and in what portions.
-const PARALLEL_ITEMS: usize = 1 << 15;
-const CHUNK: usize = 1 << 12;
-
-/// A primitive on its way into a leaf.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Item {
-    pub(super) bounds: Box32,
-    pub(super) primitive: u32,
-}
-
-impl Item {
-    /// The middle of the box on an axis; finite even where the box is not.
-    #[inline]
-    fn center(&self, axis: usize) -> f32 {
-        let middle = 0.5 * self.bounds.corners[0][axis] + 0.5 * self.bounds.corners[1][axis];
-        // A box from −∞ to ∞ (its f64 corners were beyond the range of f32) has NaN for its middle; so written, this makes
-        // a number of it as well.
-        smaller(larger(middle, f32::MIN), f32::MAX)
-    }
-}
+/// In what portions one node's items are shared among threads.
+pub(super) const CHUNK: usize = 1 << 13;
 
 /// A way to cut a set of items in two, with the boxes of both parts.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Split {
     /// The expected cost of a ray that meets the parent's box.
     pub(super) cost: f64,
-    pub(super) boxes: [Box32; 2],
+    pub(super) boxes: [Hull; 2],
     axis: usize,
     /// Items of this bin and higher go to the second part.
     bin: usize,
@@ -55,55 +38,55 @@ pub(super) struct Split {
 }
 
 impl Split {
-    /// True where the item belongs to the first part.
+    /// True where the item with this half centre belongs to the first part.
     #[inline]
-    pub(super) fn is_first(&self, item: &Item) -> bool {
-        self.grid.bin(item, self.axis) < self.bin
+    pub(super) fn is_first(&self, half_center: f32x4) -> bool {
+        self.grid.bins(half_center)[self.axis] < self.bin
     }
 }
 
-/// The bins: equal slabs of the box around the centres of all items.
+/// The bins: equal slabs of the box around the half centres of all items.
 #[derive(Clone, Copy, Debug)]
 struct Grid {
-    low: [f32; 3],
-    scale: [f32; 3],
-    /// The number of the last bin.
-    last: i32,
+    low: f32x4,
+    scale: f32x4,
 }
 
 impl Grid {
-    fn new(centers: &Box32, bins: usize) -> Self {
-        let [low, high] = centers.corners;
-        // Infinite or zero where the extent is zero or overflows: then all items fall into the same bin of that axis,
-        // or into the first and the last, and no harm is done.
-        Self { low, scale: [0, 1, 2].map(|axis| bins as f32 / (high[axis] - low[axis])), last: bins as i32 - 1 }
+    fn new(centers: &Hull, bins: usize) -> Self {
+        let extent = (centers.high - centers.low).to_array();
+        // By less than one part in a million too small, so that the highest centre is in the last bin and not beyond it.
+        // Where an axis has no extent, or hardly any, all items fall into its first bin.
+        let scale = [0, 1, 2].map(|axis| 0.999_999 * bins as f32 / extent[axis]);
+        let [x, y, z] = scale.map(|scale| if scale.is_finite() { scale } else { 0.0 });
+        Self { low: centers.low, scale: f32x4::from([x, y, z, 0.0]) }
     }
 
+    /// The bins of a half centre on the three axes; the fourth has no meaning. The remainder shows that an index is in
+    /// range; it changes nothing.
     #[inline]
-    fn bin(&self, item: &Item, axis: usize) -> usize {
-        // The conversion saturates, and takes NaN to 0.
-        (((item.center(axis) - self.low[axis]) * self.scale[axis]) as i32).clamp(0, self.last) as usize
+    fn bins(&self, half_center: f32x4) -> [usize; 4] {
+        ((half_center - self.low) * self.scale).fast_trunc_int().to_array().map(|bin| bin as usize % BINS)
     }
 }
 
 /// What fell into the bins of the three axes.
 #[derive(Clone)]
-struct Bins {
-    boxes: [[Box32; BINS]; 3],
+pub(super) struct Bins {
+    boxes: [[Hull; BINS]; 3],
     counts: [[u32; BINS]; 3],
 }
 
 impl Bins {
-    const EMPTY: Self = Self { boxes: [[Box32::EMPTY; BINS]; 3], counts: [[0; BINS]; 3] };
-
-    fn fill(&mut self, items: &[Item], grid: &Grid) {
+    fn of(items: &[Item], grid: &Grid) -> Self {
+        let mut bins = Self { boxes: [[Hull::EMPTY; BINS]; 3], counts: [[0; BINS]; 3] };
         for item in items {
-            for axis in 0..3 {
-                let bin = grid.bin(item, axis);
-                self.boxes[axis][bin].grow(&item.bounds);
-                self.counts[axis][bin] += 1;
+            for (axis, bin) in grid.bins(item.half_center()).into_iter().take(3).enumerate() {
+                bins.boxes[axis][bin].grow_item(item);
+                bins.counts[axis][bin] += 1;
             }
         }
+        bins
     }
 
     fn merge(mut self, other: &Self) -> Self {
@@ -115,95 +98,86 @@ impl Bins {
         }
         self
     }
+
+    /// How many of the items belong to the first part of a split.
+    fn first_count(&self, split: &Split) -> usize {
+        self.counts[split.axis][..split.bin].iter().map(|&count| count as usize).sum()
+    }
 }
 
 /// The cheapest of the cuts between bins; `None` where no cut has a finite cost, as where all centres coincide or the
-/// box has no area.
-pub(super) fn best_split(items: &[Item], bounds: &Box32) -> Option<Split> {
+/// box has no area. Primitives are tested `block` at a time.
+pub(super) fn best_split(items: &[Item], bounds: &Hull, centers: &Hull, block: usize) -> Option<Split> {
     let count = bins_for(items.len());
-    let grid = Grid::new(&centers(items), count);
-    let bins = if items.len() < PARALLEL_ITEMS {
-        let mut bins = Bins::EMPTY;
-        bins.fill(items, &grid);
-        bins
-    } else {
-        let fill = |mut bins: Bins, chunk: &[Item]| {
-            bins.fill(chunk, &grid);
-            bins
-        };
-        items.par_chunks(CHUNK).fold(|| Bins::EMPTY, fill).reduce(|| Bins::EMPTY, |a, b| a.merge(&b))
-    };
-    let mut best: Option<Split> = None;
+    let grid = Grid::new(centers, count);
+    choose(&Bins::of(items, &grid), grid, count, items.len(), bounds.half_area(), block)
+}
+
+/// As [`best_split`] by several threads; with how many items of each portion of [`CHUNK`] items belong to the first part.
+pub(super) fn best_split_of_many(
+    items: &[Item],
+    bounds: &Hull,
+    centers: &Hull,
+    block: usize,
+) -> Option<(Split, Vec<usize>)> {
+    let grid = Grid::new(centers, BINS);
+    let portions: Vec<Bins> = items.par_chunks(CHUNK).map(|items| Bins::of(items, &grid)).collect();
+    let (first, rest) = portions.split_first()?;
+    let bins = rest.iter().fold(first.clone(), Bins::merge);
+    let split = choose(&bins, grid, BINS, items.len(), bounds.half_area(), block)?;
+    Some((split, portions.iter().map(|bins| bins.first_count(&split)).collect()))
+}
+
+fn choose(bins: &Bins, grid: Grid, count: usize, items: usize, area: f64, block: usize) -> Option<Split> {
+    let mut best: Option<(f64, usize, usize)> = None;
+    let mut best_boxes = [Hull::EMPTY; 2];
     for axis in 0..3 {
-        let boxes = &bins.boxes[axis];
-        // Suffix unions first, then one sweep from the left.
-        let mut right = [Box32::EMPTY; BINS];
-        right[count - 1] = boxes[count - 1];
-        for bin in (1..count - 1).rev() {
-            right[bin] = boxes[bin].union(&right[bin + 1]);
+        let boxes = &bins.boxes[axis][..count];
+        let counts = &bins.counts[axis][..count];
+        if counts[0] as usize == items {
+            continue;
         }
-        let mut left = Box32::EMPTY;
+        // Suffix unions first, then one sweep from the left.
+        let mut right = [Hull::EMPTY; BINS];
+        let mut so_far = Hull::EMPTY;
+        for (right, bounds) in right.iter_mut().zip(boxes).skip(1).rev() {
+            so_far.grow(bounds);
+            *right = so_far;
+        }
+        let mut left = Hull::EMPTY;
         let mut left_count = 0;
         for bin in 1..count {
             left.grow(&boxes[bin - 1]);
-            left_count += bins.counts[axis][bin - 1] as usize;
-            let right_count = items.len() - left_count;
-            if left_count == 0 || right_count == 0 {
+            left_count += counts[bin - 1] as usize;
+            // A cut behind an empty bin is the one before it over again.
+            if counts[bin - 1] == 0 || left_count == items {
                 continue;
             }
-            let areas = left.half_area() * left_count as f64 + right[bin].half_area() * right_count as f64;
-            let cost = TRAVERSAL_COST + areas / bounds.half_area();
-            if cost.is_finite() && best.is_none_or(|best| cost < best.cost) {
-                best = Some(Split { cost, boxes: [left, right[bin]], axis, bin, grid });
+            let cost = left.half_area() * left_count.div_ceil(block) as f64
+                + right[bin].half_area() * (items - left_count).div_ceil(block) as f64;
+            if cost.is_finite() && best.is_none_or(|(best, ..)| cost < best) {
+                best = Some((cost, axis, bin));
+                best_boxes = [left, right[bin]];
             }
         }
     }
-    best
+    let (areas, axis, bin) = best?;
+    let cost = TRAVERSAL_COST + areas / area;
+    cost.is_finite().then_some(Split { cost, boxes: best_boxes, axis, bin, grid })
 }
 
 /// Sorts the half with the lower centres, on the axis where they extend farthest, to the front, and returns its length.
 /// Items of equal centre are told apart by their primitive, so that the halves do not depend on the order of the items.
-pub(super) fn median_split(items: &mut [Item]) -> usize {
-    let [low, high] = centers(items).corners;
+pub(super) fn median_split(items: &mut [Item], centers: &Hull) -> usize {
+    let extent = (centers.high - centers.low).to_array();
     let mut axis = 0;
     for candidate in 1..3 {
-        if high[candidate] - low[candidate] > high[axis] - low[axis] {
+        if extent[candidate] > extent[axis] {
             axis = candidate;
         }
     }
     let half = items.len() / 2;
-    items.select_nth_unstable_by(half, |a, b| {
-        a.center(axis).total_cmp(&b.center(axis)).then(a.primitive.cmp(&b.primitive))
-    });
+    let center = |item: &Item| item.half_center().to_array()[axis];
+    items.select_nth_unstable_by(half, |a, b| center(a).total_cmp(&center(b)).then(a.primitive().cmp(&b.primitive())));
     half
-}
-
-/// The box around the boxes of all items.
-pub(super) fn bounds_of(items: &[Item]) -> Box32 {
-    let around = |items: &[Item]| items.iter().fold(Box32::EMPTY, |around, item| around.union(&item.bounds));
-    if items.len() < PARALLEL_ITEMS {
-        around(items)
-    } else {
-        items.par_chunks(CHUNK).map(around).reduce(|| Box32::EMPTY, |a, b| a.union(&b))
-    }
-}
-
-/// The box around the centres of all items.
-fn centers(items: &[Item]) -> Box32 {
-    let around = |items: &[Item]| {
-        let mut around = Box32::EMPTY;
-        for item in items {
-            for axis in 0..3 {
-                let center = item.center(axis);
-                around.corners[0][axis] = smaller(around.corners[0][axis], center);
-                around.corners[1][axis] = larger(around.corners[1][axis], center);
-            }
-        }
-        around
-    };
-    if items.len() < PARALLEL_ITEMS {
-        around(items)
-    } else {
-        items.par_chunks(CHUNK).map(around).reduce(|| Box32::EMPTY, |a, b| a.union(&b))
-    }
 }

@@ -95,6 +95,74 @@ fn the_same_tree_from_any_number_of_threads() {
     assert!(one == build(2) && one == build(7));
 }
 
+/// Triangles of which many are alike, quantised, so that there are ties in abundance.
+fn quantised_triangles(count: usize, random: &mut Random) -> Vec<[[f32; 3]; 3]> {
+    let mut corner = |around: Vector3| (around * 40.0 + random.vector() * 3.0).to_array().map(|x| x.round() as f32);
+    (0..count)
+        .map(|i| Vector3::new(0.001 * (i % 997) as f64, i as f64 / count as f64, 0.2))
+        .map(|around| [0, 1, 2].map(|_| corner(around)))
+        .collect()
+}
+
+fn boxes_of(triangles: &[[[f32; 3]; 3]]) -> Vec<Bounds3> {
+    let around = |[a, b, c]: &[[f32; 3]; 3]| {
+        if a == b || b == c || c == a {
+            return Bounds3::EMPTY;
+        }
+        [a, b, c].iter().fold(Bounds3::EMPTY, |bounds, p| bounds.including(Point3::from(p.map(f64::from))))
+    };
+    triangles.iter().map(around).collect()
+}
+
+#[test]
+fn triangles_give_the_same_tree_from_any_number_of_threads() {
+    let triangles = quantised_triangles(100_000, &mut Random(12));
+    let build = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        pool.install(|| {
+            Bvh::over_triangles(triangles.len(), |i| triangles[i as usize], BuildOptions { block: 8, presplit: false })
+        })
+        .expect("not too many")
+    };
+    let one = build(1);
+    assert_eq!(one.validate(&boxes_of(&triangles)), Ok(()));
+    assert!(one == build(2) && one == build(7));
+    assert_eq!(one.bounds(), boxes_of(&triangles).iter().fold(Bounds3::EMPTY, |all, b| all.union(b)));
+}
+
+#[test]
+fn blocks_are_filled() {
+    let triangles = quantised_triangles(20_000, &mut Random(13));
+    let build = |block| {
+        Bvh::over_triangles(triangles.len(), |i| triangles[i as usize], BuildOptions { block, presplit: false })
+            .expect("not too many")
+    };
+    let [one, four, eight, most] = [1, 4, 8, 100].map(|block| build(block).statistics());
+    assert_eq!(eight, most);
+    assert!(
+        2 * eight.leaves < one.leaves && eight.leaves < four.leaves,
+        "{} {} {}",
+        one.leaves,
+        four.leaves,
+        eight.leaves
+    );
+    assert!(eight.sah_cost < four.sah_cost && four.sah_cost < one.sah_cost, "{one:?} {four:?} {eight:?}");
+    assert!(eight.primitives as f64 > 5.0 * eight.leaves as f64, "{eight:?}");
+}
+
+#[test]
+fn triangles_that_cannot_be_met_are_left_out() {
+    let good = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, -0.0]];
+    let with = |corner: [f32; 3]| [good[0], good[1], corner];
+    let triangles = [with([f32::NAN; 3]), good, with(good[1]), with([0.0, f32::INFINITY, 0.0]), with([3.0, 4.0, -5.0])];
+    let bvh = Bvh::over_triangles(5, |i| triangles[i as usize], BuildOptions { block: 8, presplit: false })
+        .expect("not too many");
+    assert_eq!(bvh.primitives, [1, 4]);
+    assert_eq!(bvh.bounds(), Bounds3::new(Point3::new(0.0, 0.0, -5.0), Point3::new(3.0, 4.0, 0.0)));
+    let none = Bvh::over_triangles(0, |_| good, BuildOptions::default()).expect("not too many");
+    assert!(none.is_empty());
+}
+
 /// Primitives of both kinds, tested in the plainest way.
 enum Primitive {
     Sphere(Point3, f64),
@@ -333,14 +401,17 @@ fn planted_defects_are_caught() {
     assert!(matches!(shrunk, Defect::OutsideLeaf { .. }), "{shrunk}");
     let inner_shrunk = sabotage(&|bvh| bvh.nodes[0].bounds.corners[0][1] = -0.9);
     assert!(matches!(inner_shrunk, Defect::OutsideParent(_)), "{inner_shrunk}");
-    let repeated = sabotage(&|bvh| bvh.primitives[0] = bvh.primitives[100]);
+    let multiple = good.nodes.iter().position(|node| node.count > 1).expect("a leaf of several");
+    let repeated = sabotage(&|bvh| {
+        let first = bvh.nodes[multiple].range().start;
+        bvh.primitives[first + 1] = bvh.primitives[first];
+    });
     assert!(matches!(repeated, Defect::Unexpected(_)), "{repeated}");
     let unknown = sabotage(&|bvh| bvh.primitives[7] = 200);
     assert_eq!(unknown, Defect::Unexpected(200));
-    let multiple = good.nodes.iter().position(|node| node.count > 1).expect("a leaf of several");
     let dropped = sabotage(&|bvh| bvh.nodes[multiple].count -= 1);
     assert!(matches!(dropped, Defect::Missing(_)), "{dropped}");
-    let overfull = sabotage(&|bvh| bvh.nodes[leaf].count = 5);
+    let overfull = sabotage(&|bvh| bvh.nodes[leaf].count = 9);
     assert_eq!(overfull, Defect::LeafSize(leaf));
     let beyond = sabotage(&|bvh| bvh.nodes[leaf].link = 200);
     assert_eq!(beyond, Defect::LeafSize(leaf));
@@ -367,7 +438,7 @@ fn a_tree_that_is_too_deep_is_caught() {
     let node = |link, count| Node { bounds: Box32::enclosing(&bounds[0]), link, count };
     let mut nodes: Vec<Node> = (0..depth as u32).flat_map(|i| [node(2, 0), node(i, 1)]).collect();
     nodes.push(node(depth as u32, 1));
-    let bvh = Bvh { nodes, primitives: (0..=depth as u32).collect(), extent: 1.0 };
+    let bvh = Bvh { nodes, primitives: (0..=depth as u32).collect(), extent: 1.0, block: 1, ..Bvh::default() };
     assert!(matches!(bvh.validate(&bounds), Err(Defect::TooDeep(_))));
 }
 

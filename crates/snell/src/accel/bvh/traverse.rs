@@ -9,6 +9,7 @@
 //! the primitive's own test, whose rounding may put a hit just outside its box; [`crate::shape::triangle_mesh`] is
 //! watertight by it. The margin costs nothing per box, being part of the ray's origin.
 
+use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
 use snell_math::{Point3, Ray};
@@ -215,7 +216,7 @@ impl Bvh {
         );
     }
 
-    /// Visits the primitives of all leaves whose box, and whose ancestors' boxes, `enters` accepts.
+    /// Visits the primitives of all leaves whose box, and whose ancestors' boxes, `enters` accepts, each once.
     #[inline]
     fn visit_where(
         &self,
@@ -225,6 +226,8 @@ impl Bvh {
         if !self.nodes.first().is_some_and(|root| enters(&root.bounds)) {
             return ControlFlow::Continue(());
         }
+        // Those in several leaves that were visited already.
+        let mut visited = BTreeSet::new();
         let mut stack = [0_u32; MAX_DEPTH];
         let mut height = 0;
         let mut index = 0_usize;
@@ -232,7 +235,9 @@ impl Bvh {
             let node = &self.nodes[index];
             if node.is_leaf() {
                 for &primitive in &self.primitives[node.range()] {
-                    visit(primitive)?;
+                    if !self.repeated.contains(primitive) || visited.insert(primitive) {
+                        visit(primitive)?;
+                    }
                 }
             } else {
                 let (first, second) = (index + 1, index + node.link as usize);
