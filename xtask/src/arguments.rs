@@ -26,6 +26,14 @@ impl Arguments {
         self.words.len() < before
     }
 
+    /// Takes `flag` out with all that follows it, which is returned; `None` where it is not there.
+    pub fn rest_after(&mut self, flag: &str) -> Option<Vec<String>> {
+        let at = self.words.iter().position(|word| word == flag)?;
+        let rest = self.words.split_off(at + 1);
+        self.words.pop();
+        Some(rest)
+    }
+
     /// Takes `option VALUE` or `option=VALUE` out; `None` where it is not there.
     pub fn option<T: FromStr>(&mut self, option: &str) -> Result<Option<T>, String> {
         let with_equals = format!("{option}=");
@@ -83,6 +91,14 @@ mod tests {
         assert_eq!(given.option::<u32>("--seconds"), Ok(Some(5)));
         assert_eq!(given.names(), Ok(vec!["one".to_owned(), "two".to_owned()]));
         assert_eq!(arguments("--seconds=7").option::<u32>("--seconds"), Ok(Some(7)));
+    }
+
+    #[test]
+    fn the_rest_is_taken_as_it_is() {
+        let mut given = arguments("one --run two --three");
+        assert_eq!(given.rest_after("--run"), Some(vec!["two".to_owned(), "--three".to_owned()]));
+        assert_eq!(given.rest_after("--run"), None);
+        assert_eq!(given.names(), Ok(vec!["one".to_owned()]));
     }
 
     #[test]

@@ -58,8 +58,8 @@ const COMMANDS: &[Command] = &[
     },
     Command {
         name: "bench",
-        usage: "[--runs N] [--drawings] [NAME...]",
-        summary: "measure whole pictures against POV-Ray, in alternating runs; or line drawings",
+        usage: "[--runs N] [--only TEXT] [--write-docs] [--bless] [BENCHMARK...]",
+        summary: "measure pictures, rays and builds against other renderers; an unknown name tells what there is",
         run: bench::run,
     },
     Command {

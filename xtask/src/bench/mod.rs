@@ -1,164 +1,205 @@
-//! `cargo xtask bench`: whole pictures against POV-Ray, by the cost of the whole process.
+//! `cargo xtask bench`: how fast we are, against the best that are installed, and where the time goes.
 //!
-//! Both render the same scene at the same size with the same number of threads, without antialiasing, and write a PNG.
-//! Runs alternate, so that a machine that slows down slows both; a warm-up run of each is not counted. What is compared
-//! is CPU seconds (user + system) of the process as the operating system counted them, not wall time: POV-Ray waits
-//! half a second at its start that would flatter us. Medians and ratios are quoted, with the spread beside them.
+//! Each kind of benchmark is a file and a row of [`GROUPS`]. What is counted of whole pictures is CPU seconds (user + system) of
+//! the process as the operating system counted them, and wall time beside: POV-Ray waits half a second at its start that would
+//! flatter us. Every report is printed and kept as `target/bench/NAME.md`; `--write-docs` puts it into docs/performance.md too.
 
+mod antialiasing;
+mod docs;
 mod drawings;
+mod embree;
+mod flip;
+mod instructions;
+mod kernels;
 mod measure;
+mod mesh_file;
+mod meshes;
+mod models;
+mod nff;
+mod nff_povray;
+mod pictures;
+mod programs;
 mod report;
+mod roofline;
+mod roofline_loops;
+mod scaling;
+mod spd;
 mod sphereflake;
+mod start;
+mod statistics;
+mod threads;
+mod vectors;
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
 
 use crate::Outcome;
 use crate::arguments::Arguments;
 use crate::process;
-use measure::{Cost, measure};
-use report::{Row, describe_machine};
+use programs::Programs;
+use report::{Section, Verdict, describe_machine};
 
-/// Counted runs of each renderer unless told.
+/// Counted runs of each program unless told.
 const RUNS: usize = 5;
-/// The size of the pictures, in pixels.
-const WIDTH: &str = "1024";
-const HEIGHT: &str = "768";
-/// Threads of either renderer.
-const THREADS: &str = "2";
 
-/// One picture that both renderers make: `benches/povray/POV` and its twin.
-struct Case {
+/// A kind of benchmark.
+struct Group {
     name: &'static str,
-    pov: &'static str,
-    /// Further words for POV-Ray.
-    declare: &'static [&'static str],
-    twin: Twin,
+    /// One line for the list.
+    summary: &'static str,
+    /// Whether it runs where no names are given: those that take a few minutes together.
+    usual: bool,
+    run: fn(&Bench) -> Result<Section, String>,
 }
 
-/// A picture's scene in Snell's format.
-enum Twin {
-    /// `benches/NAME.toml`.
-    File,
-    /// Written when it is needed, being long.
-    Sphereflake { depth: u32 },
-}
-
-const CASES: &[Case] = &[
-    Case { name: "nine-red-balls", pov: "nine-red-balls.pov", declare: &[], twin: Twin::File },
-    Case { name: "one-glass-sphere", pov: "one-glass-sphere.pov", declare: &[], twin: Twin::File },
-    Case { name: "five-glass-balls", pov: "five-glass-balls.pov", declare: &[], twin: Twin::File },
-    Case {
-        name: "sphereflake-7381",
-        pov: "sphereflake.pov",
-        declare: &["Declare=DEPTH=4"],
-        twin: Twin::Sphereflake { depth: 4 },
+const GROUPS: &[Group] = &[
+    Group {
+        name: "pictures",
+        summary: "whole pictures without antialiasing, against POV-Ray and Tachyon",
+        usual: true,
+        run: pictures::run,
     },
-    Case {
-        name: "sphereflake-66430",
-        pov: "sphereflake.pov",
-        declare: &["Declare=DEPTH=5"],
-        twin: Twin::Sphereflake { depth: 5 },
+    Group {
+        name: "antialiasing",
+        summary: "the same with antialiasing, at equal quality",
+        usual: true,
+        run: antialiasing::run,
     },
+    Group {
+        name: "meshes",
+        summary: "a mirror and a glass blob of 100 thousand and of a million triangles each",
+        usual: true,
+        run: meshes::run,
+    },
+    Group { name: "spd", summary: "the Standard Procedural Databases at 513 x 513", usual: true, run: spd::run },
+    Group { name: "start", summary: "a picture of 4 x 3 pixels", usual: true, run: start::run },
+    Group { name: "threads", summary: "two threads against one", usual: true, run: threads::run },
+    Group {
+        name: "kernels",
+        summary: "rays a second, build rate and bytes a triangle, against Embree",
+        usual: false,
+        run: kernels::run,
+    },
+    Group {
+        name: "instructions",
+        summary: "instructions of small pictures against those stored; --bless stores them",
+        usual: false,
+        run: instructions::run,
+    },
+    Group {
+        name: "scaling",
+        summary: "from ten spheres and a thousand triangles to a million and ten",
+        usual: false,
+        run: scaling::run,
+    },
+    Group { name: "roofline", summary: "what the machine could do at best", usual: false, run: roofline::run },
+    Group { name: "drawings", summary: "what line drawings cost", usual: false, run: drawings::run },
 ];
+
+/// What every benchmark is given.
+struct Bench {
+    programs: Programs,
+    /// Counted runs of each program.
+    runs: usize,
+    /// Only rows whose name contains this.
+    only: Option<String>,
+    /// Stores what was measured as what is expected.
+    bless: bool,
+    /// Where files are written.
+    scratch: PathBuf,
+}
+
+impl Bench {
+    /// Whether a row is wanted; says that it begins.
+    fn wants(&self, name: &str) -> bool {
+        let wanted = self.only.as_ref().is_none_or(|only| name.contains(only.as_str()));
+        if wanted {
+            println!("{name} ...");
+        }
+        wanted
+    }
+
+    /// Writes a file among the products and says where it is.
+    fn write(&self, name: &str, content: &[u8]) -> Result<PathBuf, String> {
+        let file = self.scratch.join(name);
+        std::fs::write(&file, content).map_err(|error| format!("cannot write {}: {error}", file.display()))?;
+        Ok(file)
+    }
+}
 
 /// Runs the command line `cargo xtask bench ...`.
 pub fn run(mut arguments: Arguments) -> Outcome {
+    if let Some(words) = arguments.rest_after(measure::MEASURE) {
+        return measure::print(&words);
+    }
     let runs = arguments.option("--runs")?.unwrap_or(RUNS).max(1);
-    let drawings = arguments.flag("--drawings");
+    let only = arguments.option("--only")?;
+    let write_docs = arguments.flag("--write-docs");
+    let bless = arguments.flag("--bless");
+    let features = arguments.flag("--features");
     let wanted = arguments.names()?;
-    if let Some(unknown) = wanted.iter().find(|name| !CASES.iter().any(|case| case.name == name.as_str())) {
-        let all: Vec<&str> = CASES.iter().map(|case| case.name).collect();
-        return Err(format!("there is no benchmark `{unknown}`; there are: {}", all.join(", ")));
+    if features {
+        println!("{}", instructions::features());
+        return Ok(());
+    }
+    if let Some(unknown) = wanted.iter().find(|name| !GROUPS.iter().any(|group| group.name == name.as_str())) {
+        return Err(format!("there is no benchmark `{unknown}`; there are:\n{}", list()));
     }
     let scratch = process::target().join("bench");
     std::fs::create_dir_all(&scratch).map_err(|error| format!("cannot make {}: {error}", scratch.display()))?;
-    if drawings {
-        return drawings::run(runs, &scratch);
-    }
-    let povray = povray_version();
-    if povray.is_none() {
-        println!("POV-Ray is not installed, so there is nothing to compare with (`apt-get install povray`).");
-    }
-    let snell = process::build_snell()?;
+    let bench = Bench { programs: Programs::find()?, runs, only, bless, scratch };
 
-    let mut rows = Vec::new();
-    for case in CASES.iter().filter(|case| wanted.is_empty() || wanted.iter().any(|name| name == case.name)) {
-        let twin = case.twin(&scratch)?;
-        let ours = Some(snell_command(&snell, &twin, &scratch.join(format!("{}.png", case.name))));
-        let theirs = povray.is_some().then(|| povray_command(case, &scratch.join(format!("{}-povray.png", case.name))));
-        println!("{} ...", case.name);
-        let [ours, theirs] = alternate([ours, theirs], runs)?;
-        rows.push(Row { name: case.name, ours, theirs });
-    }
-
-    let mut versions = vec![process::output(process::program(&snell.to_string_lossy()).arg("--version"))?];
-    versions.extend(povray);
-    versions.push(process::output(Command::new("rustc").arg("--version"))?);
-    let report = report::text(&rows, runs, &describe_machine(), &versions);
-    let file = scratch.join("report.md");
-    std::fs::write(&file, &report).map_err(|error| format!("cannot write {}: {error}", file.display()))?;
-    println!("\n{report}\nalso in {}", file.display());
-    Ok(())
-}
-
-impl Case {
-    /// Where the scene in Snell's format is; written into `scratch` where it is not among the sources.
-    fn twin(&self, scratch: &Path) -> Result<PathBuf, String> {
-        match self.twin {
-            Twin::File => Ok(process::root().join("benches").join(format!("{}.toml", self.name))),
-            Twin::Sphereflake { depth } => {
-                let file = scratch.join(format!("{}.toml", self.name));
-                std::fs::write(&file, sphereflake::scene(depth))
-                    .map_err(|error| format!("cannot write {}: {error}", file.display()))?;
-                Ok(file)
+    let mut verdicts = Vec::new();
+    let mut failures = Vec::new();
+    for group in GROUPS {
+        let asked = if wanted.is_empty() { group.usual } else { wanted.iter().any(|name| name == group.name) };
+        if !asked {
+            continue;
+        }
+        println!("\n== {}: {}", group.name, group.summary);
+        // One that fails does not take the others' results with it.
+        match (group.run)(&bench) {
+            Ok(section) => {
+                keep(&bench, group.name, &section, write_docs)?;
+                verdicts.extend(section.verdicts);
             }
+            Err(reason) => failures.push(format!("{}: {reason}", group.name)),
         }
     }
+    summarize(&bench.scratch, &verdicts, wanted.is_empty() && write_docs)?;
+    if failures.is_empty() { Ok(()) } else { Err(failures.join("\n")) }
 }
 
-/// Runs the commands that there are in turn, once to warm up and `runs` times to count.
-fn alternate(mut commands: [Option<Command>; 2], runs: usize) -> Result<[Vec<Cost>; 2], String> {
-    let mut costs = [Vec::new(), Vec::new()];
-    for round in 0..=runs {
-        for (command, costs) in commands.iter_mut().zip(&mut costs) {
-            let Some(command) = command else { continue };
-            let cost = measure(command)?;
-            if round > 0 {
-                costs.push(cost);
-            }
-        }
+/// Prints a section with what it was measured on, keeps it, and puts it into the documentation.
+fn keep(bench: &Bench, name: &str, section: &Section, write_docs: bool) -> Outcome {
+    let mut command = format!("cargo xtask bench {name} --runs {}", bench.runs);
+    if let Some(only) = &bench.only {
+        command += &format!(" --only {only}");
     }
-    Ok(costs)
+    let text = format!(
+        "{}\nMeasured on {} by `{command}` on {}; {}.\n",
+        section.text,
+        report::today(),
+        describe_machine(),
+        bench.programs.versions()?.join(", ")
+    );
+    println!("\n{text}");
+    bench.write(&format!("{name}.md"), text.as_bytes())?;
+    if write_docs { docs::write(name, &text) } else { Ok(()) }
 }
 
-/// The command that renders a twin scene; threads are set, the rest is what a user gets.
-fn snell_command(snell: &Path, scene: &Path, picture: &Path) -> Command {
-    let mut command = process::program(&snell.to_string_lossy());
-    command.arg("render").arg(scene).arg("-o").arg(picture);
-    command.args(["--width", WIDTH, "--height", HEIGHT, "--threads", THREADS, "--aa", "none", "--quiet"]);
-    command.stdout(Stdio::null()).stderr(Stdio::null());
-    command
+/// The table of the bars, and the documentation's where all were measured.
+fn summarize(scratch: &Path, verdicts: &[Verdict], write_docs: bool) -> Outcome {
+    let table = report::bars(verdicts);
+    if !table.is_empty() {
+        println!("{table}");
+    }
+    println!("Reports are in {}", scratch.display());
+    if write_docs { docs::write("bars", &table) } else { Ok(()) }
 }
 
-/// The command that renders a scene with POV-Ray: no window, no messages, no antialiasing.
-fn povray_command(case: &Case, picture: &Path) -> Command {
-    let folder: PathBuf = process::root().join("benches").join("povray");
-    let mut command = Command::new("povray");
-    command.current_dir(folder);
-    command.arg(format!("+I{}", case.pov)).arg(format!("+O{}", picture.display())).args(case.declare);
-    command.args([format!("+W{WIDTH}"), format!("+H{HEIGHT}"), format!("+WT{THREADS}")]);
-    command.args(["-D", "-GA", "-A"]).stdout(Stdio::null()).stderr(Stdio::null());
-    command
-}
-
-/// The first line in which POV-Ray names itself, where it is installed.
-fn povray_version() -> Option<String> {
-    let output = Command::new("povray").arg("--version").output().ok()?;
-    // It prints its version among other messages, on standard error.
-    let text = [output.stdout, output.stderr].concat();
-    let text = String::from_utf8_lossy(&text);
-    text.lines().find(|line| line.starts_with("POV-Ray")).map(str::to_owned)
+/// The groups, one a line.
+fn list() -> String {
+    GROUPS.iter().map(|group| format!("  {:<13} {}\n", group.name, group.summary)).collect()
 }
 
 #[cfg(test)]
@@ -166,21 +207,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_case_has_both_its_scenes() {
-        for case in CASES {
-            assert!(process::root().join("benches/povray").join(case.pov).is_file(), "{}", case.pov);
-            if matches!(case.twin, Twin::File) {
-                let twin = case.twin(Path::new("")).expect("it is a path");
-                assert!(twin.is_file(), "{}", twin.display());
-            }
-        }
-    }
-
-    #[cfg(unix)]
-    #[test]
-    fn runs_alternate_and_the_warm_up_is_not_counted() {
-        let [ours, theirs] = alternate([Some(Command::new("true")), None], 3).expect("`true` runs");
-        assert_eq!((ours.len(), theirs.len()), (3, 0));
-        assert!(alternate([None, Some(Command::new("false"))], 1).is_err());
+    fn an_unknown_benchmark_is_refused_with_the_list() {
+        let error = run(Arguments::new(vec!["no-such".to_owned()])).expect_err("it is unknown");
+        assert!(GROUPS.iter().all(|group| error.contains(group.name)), "{error}");
     }
 }
