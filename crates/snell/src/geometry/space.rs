@@ -4,7 +4,7 @@ use snell_math::{Bounds3, Normal3, Point3, Ray, Vector3};
 
 use super::placed::Placement;
 use super::{InnerHit, Touching};
-use crate::accel::{BuildError, Bvh, Candidate};
+use crate::accel::{BuildError, Candidate, WideBvh};
 use crate::shape::{Plane, Shape, Sphere, SpherePairs, SurfacePoint};
 use crate::texture::RELATIVE_INSET;
 
@@ -96,7 +96,7 @@ pub struct Space {
     pub placements: Vec<Placement>,
     pub object_spaces: Vec<ObjectSpace>,
     /// Over the first primitives, as many as `bounds` has.
-    pub bvh: Bvh,
+    pub bvh: WideBvh,
     /// In place of the hierarchy, where those are a handful of plain spheres; else empty.
     pub handful: SpherePairs,
     /// From which primitive on they are tested one by one.
@@ -113,7 +113,7 @@ impl Space {
         placements: Vec<Placement>,
         object_spaces: Vec<ObjectSpace>,
     ) -> Result<Self, BuildError> {
-        let bvh = Bvh::build(&bounds)?;
+        let bvh = WideBvh::build(&bounds)?;
         let bounded = bounds.len();
         let spheres: Vec<Sphere> = primitives[..bounded]
             .iter()

@@ -4,20 +4,27 @@
 //! normals, texture coordinates and colours are `f32` as they came from the file; everything computed from them is `f64`.
 //! All lengths are in the mesh's own space. A ray's direction need not have unit length; `t` is the ray parameter.
 
+mod blocks;
+mod queries;
 mod topology;
 mod watertight;
 
+#[cfg(test)]
+mod query_tests;
 #[cfg(test)]
 mod tests;
 
 use std::ops::ControlFlow;
 
 use rayon::prelude::*;
+use snell_math::lanes::InstructionSet;
 use snell_math::{Bounds3, Normal3, Point3, Ray, Rgb, Vector3};
 use snell_scene::scene::Mesh;
 
 use super::SurfacePoint;
+use crate::accel::wide::{WideTree, roomy};
 use crate::accel::{BuildError, BuildOptions, Bvh};
+use blocks::TriangleBlock;
 pub use topology::{EdgeFaces, MeshEdge};
 use watertight::{Meeting, RaySpace};
 
@@ -53,7 +60,11 @@ pub struct TriangleMesh {
     uvs: Vec<[f32; 2]>,
     colors: Vec<[f32; 3]>,
     triangle_materials: Vec<u16>,
-    bvh: Bvh,
+    tree: WideTree,
+    /// The leaves of the tree.
+    blocks: Vec<TriangleBlock>,
+    /// By what boxes and triangles are filtered.
+    set: InstructionSet,
     bounds: Bounds3,
 }
 
@@ -119,12 +130,12 @@ impl TriangleMesh {
         {
             return Err(MeshError::NoSuchVertex(triangle));
         }
-        let corners = |triangle: u32| mesh.triangles[triangle as usize].map(|vertex| mesh.positions[vertex as usize]);
-        let bvh = Bvh::over_triangles(
-            mesh.triangles.len(),
-            corners,
-            BuildOptions { block: BLOCK, ..BuildOptions::default() },
-        )?;
+        let corners = |triangle| corners_of(&mesh.positions, &mesh.triangles, triangle);
+        let options = BuildOptions { block: BLOCK, ..BuildOptions::default() };
+        let bvh = Bvh::over_triangles(mesh.triangles.len(), corners, options)?;
+        let (tree, leaves) = WideTree::new(&bvh);
+        let mut blocks = roomy(leaves.len());
+        leaves.par_iter().map(|leaf| TriangleBlock::new(*leaf, corners)).collect_into_vec(&mut blocks);
         Ok(Self {
             positions: mesh.positions.clone(),
             triangles: mesh.triangles.clone(),
@@ -132,9 +143,17 @@ impl TriangleMesh {
             uvs: mesh.uvs.clone(),
             colors: mesh.colors.clone(),
             triangle_materials: mesh.triangle_materials.clone(),
+            tree,
+            blocks,
+            set: InstructionSet::best(),
             bounds: bvh.bounds(),
-            bvh,
         })
+    }
+
+    /// The same mesh, filtered by other instructions; nothing else changes.
+    #[must_use]
+    pub fn with_instructions(self, set: InstructionSet) -> Self {
+        Self { set, ..self }
     }
 
     /// The closest hit with t_min < t ≤ t_max; `t_min` may be negative. Where several triangles are met at the same t, the
@@ -146,12 +165,7 @@ impl TriangleMesh {
     /// crosses it twice or never; one on the border of an open mesh may meet it or not.
     #[inline]
     pub fn intersect(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<MeshHit> {
-        let space = RaySpace::new(ray)?;
-        let (triangle, (_, meeting)) = self.bvh.closest_between(ray, t_min, t_max, |triangle, t_max| {
-            let meeting = space.meet(self.corners(triangle))?;
-            (t_min < meeting.t && meeting.t <= t_max).then_some((meeting.t, meeting))
-        })?;
-        Some(MeshHit::new(triangle, meeting))
+        queries::closest(self, ray, t_min, t_max)
     }
 
     /// The hit of a ray with one triangle, worked out again from what is worth keeping of it: the triangle and t. Of a ray
@@ -174,19 +188,15 @@ impl TriangleMesh {
         ray: &Ray,
         t_min: f64,
         t_max: f64,
-        mut visit: impl FnMut(MeshHit) -> ControlFlow<()>,
+        visit: impl FnMut(MeshHit) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let Some(space) = RaySpace::new(ray) else { return ControlFlow::Continue(()) };
-        self.bvh.visit_between(ray, t_min, t_max, |triangle| match space.meet(self.corners(triangle)) {
-            Some(meeting) if t_min < meeting.t && meeting.t <= t_max => visit(MeshHit::new(triangle, meeting)),
-            _ => ControlFlow::Continue(()),
-        })
+        queries::each(self, ray, t_min, t_max, visit)
     }
 
     /// True where something is met with t_min < t ≤ t_max: the question of a shadow ray to an opaque mesh.
     #[inline]
     pub fn any(&self, ray: &Ray, t_min: f64, t_max: f64) -> bool {
-        self.for_each_hit(ray, t_min, t_max, |_| ControlFlow::Break(())).is_break()
+        queries::any(self, ray, t_min, t_max)
     }
 
     /// The surface at a hit of `ray` with this mesh.
@@ -275,7 +285,7 @@ impl TriangleMesh {
 
     /// True where the mesh encloses something: every edge is matched, see [`TriangleMesh::boundary_edges`].
     pub fn is_closed(&self) -> bool {
-        !self.bvh.is_empty() && self.boundary_edges() == 0
+        !self.tree.is_empty() && self.boundary_edges() == 0
     }
 
     /// True where a point is inside a closed mesh: a ray from it crosses the mesh an odd number of times. Any direction
@@ -303,12 +313,13 @@ impl TriangleMesh {
             + size_of_val(self.uvs.as_slice())
             + size_of_val(self.colors.as_slice())
             + size_of_val(self.triangle_materials.as_slice())
-            + self.bvh.bytes()
+            + self.tree.bytes()
+            + size_of_val(self.blocks.as_slice())
     }
 
     #[inline]
     fn corners(&self, triangle: u32) -> [[f32; 3]; 3] {
-        self.triangles[triangle as usize].map(|vertex| self.positions[vertex as usize])
+        corners_of(&self.positions, &self.triangles, triangle)
     }
 
     /// An attribute of the vertices, mixed at a hit; `None` where the mesh does not have it.
@@ -330,6 +341,11 @@ impl MeshHit {
     fn new(triangle: u32, meeting: Meeting) -> Self {
         Self { t: meeting.t, triangle, barycentric: meeting.weights, front: meeting.front }
     }
+}
+
+#[inline]
+fn corners_of(positions: &[[f32; 3]], triangles: &[[u32; 3]], triangle: u32) -> [[f32; 3]; 3] {
+    triangles[triangle as usize].map(|vertex| positions[vertex as usize])
 }
 
 fn point(position: [f32; 3]) -> Point3 {

@@ -6,17 +6,17 @@ use snell_math::{Bounds3, Point3};
 /// a ray meets first is chosen by an index.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
-pub(super) struct Box32 {
-    pub(super) corners: [[f32; 3]; 2],
+pub(in crate::accel) struct Box32 {
+    pub(in crate::accel) corners: [[f32; 3]; 2],
 }
 
 impl Box32 {
     /// Holds nothing: the neutral element of the union.
-    pub(super) const EMPTY: Self = Self { corners: [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]] };
+    pub(in crate::accel) const EMPTY: Self = Self { corners: [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]] };
 
     /// The smallest box of `f32` around a box of `f64`. A corner beyond the range of `f32` becomes infinite. No corner
     /// is −0 (adding 0 sees to it), so that equal boxes have equal bits.
-    pub(super) fn enclosing(bounds: &Bounds3) -> Self {
+    pub(in crate::accel) fn enclosing(bounds: &Bounds3) -> Self {
         let low = bounds.min.to_array().map(|x| round_down(x) + 0.0);
         let high = bounds.max.to_array().map(|x| 0.0 - round_down(-x));
         Self { corners: [low, high] }
@@ -36,7 +36,7 @@ impl Box32 {
         self.corners.iter().flatten().all(|x| x.is_finite())
     }
 
-    pub(super) fn to_bounds(self) -> Bounds3 {
+    pub(in crate::accel) fn to_bounds(self) -> Bounds3 {
         let [min, max] = self.corners.map(|corner| Point3::from(corner.map(f64::from)));
         Bounds3::new(min, max)
     }
@@ -51,26 +51,34 @@ impl Box32 {
         Self { corners }
     }
 
+    #[inline]
+    pub(in crate::accel) fn grow(&mut self, other: &Self) {
+        for axis in 0..3 {
+            self.corners[0][axis] = smaller(self.corners[0][axis], other.corners[0][axis]);
+            self.corners[1][axis] = larger(self.corners[1][axis], other.corners[1][axis]);
+        }
+    }
+
     /// Half the surface area, in `f64` so that it does not overflow; 0 where empty.
     #[inline]
-    pub(super) fn half_area(&self) -> f64 {
+    pub(in crate::accel) fn half_area(&self) -> f64 {
         let [x, y, z] = [0, 1, 2].map(|axis| f64::from(self.corners[1][axis]) - f64::from(self.corners[0][axis]));
         if x >= 0.0 { x * y + y * z + z * x } else { 0.0 }
     }
 
     /// The largest absolute coordinate.
-    pub(super) fn max_abs(&self) -> f64 {
+    pub(in crate::accel) fn max_abs(&self) -> f64 {
         self.corners.iter().flatten().fold(0.0, |largest: f64, x| largest.max(f64::from(x.abs())))
     }
 
     /// True where the point lies inside or on the border.
     #[inline]
-    pub(super) fn contains_point(&self, p: Point3) -> bool {
+    pub(in crate::accel) fn contains_point(&self, p: Point3) -> bool {
         (0..3).all(|axis| f64::from(self.corners[0][axis]) <= p[axis] && p[axis] <= f64::from(self.corners[1][axis]))
     }
 
     /// True where every point of `inner` lies inside or on the border.
-    pub(super) fn contains_box(&self, inner: &Self) -> bool {
+    pub(in crate::accel) fn contains_box(&self, inner: &Self) -> bool {
         (0..3).all(|axis| {
             self.corners[0][axis] <= inner.corners[0][axis] && inner.corners[1][axis] <= self.corners[1][axis]
         })
@@ -86,12 +94,12 @@ fn round_down(x: f64) -> f32 {
 // `f32::min` and `f32::max` take care of NaN, which there is none of here, at the price of four instructions for one.
 
 #[inline]
-fn smaller(a: f32, b: f32) -> f32 {
+pub(in crate::accel) fn smaller(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
 #[inline]
-fn larger(a: f32, b: f32) -> f32 {
+pub(in crate::accel) fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 

@@ -1,13 +1,14 @@
 //! A binary bounding volume hierarchy over axis-aligned boxes.
 //!
 //! Built top down by the binned surface area heuristic (Wald, "On fast Construction of SAH-based Bounding Volume
-//! Hierarchies", IEEE RT 2007), stored depth first in 32-byte nodes, traversed with a stack of fixed size.
+//! Hierarchies", IEEE RT 2007), stored depth first in 32-byte nodes. Rays are traced through the tree of eight children a
+//! node that is made of it, see [`crate::accel::wide`].
 //!
 //! Units and spaces: boxes, points and rays share one space and its unit of length, whichever the caller chose. `t` is
 //! the ray parameter; it is a length only where the direction has unit length. Boxes are stored in `f32`, rounded
-//! outward; every decision about a ray is taken in `f64`.
+//! outward.
 
-mod box32;
+pub(in crate::accel) mod box32;
 mod build;
 mod clip;
 mod item;
@@ -16,50 +17,46 @@ mod places;
 mod presplit;
 mod split;
 mod subtree;
-mod traverse;
 mod validate;
 
 #[cfg(test)]
-mod tests;
+pub(in crate::accel) mod tests;
 
 pub use build::{BuildError, BuildOptions};
-pub use traverse::Candidate;
 pub use validate::Defect;
 
-use box32::Box32;
+pub(in crate::accel) use box32::Box32;
 use places::Places;
 use snell_math::Bounds3;
 
 /// The most primitives a leaf holds, and are tested at once.
-const MAX_LEAF: usize = 8;
+pub(in crate::accel) const MAX_LEAF: usize = 8;
 
 /// The depth of the deepest leaf, the root being at depth 0, is at most this; the builder takes care of it (see
 /// [`build`]), and the traversal's stack, which holds one node a level at most, is this long.
-const MAX_DEPTH: usize = 64;
+pub(in crate::accel) const MAX_DEPTH: usize = 64;
 
 /// A bounding volume hierarchy. Primitives are known by their place in the slice of boxes it was built from.
 ///
 /// ```
 /// use snell::accel::Bvh;
-/// use snell_math::{Bounds3, Point3, Ray, Vector3};
+/// use snell_math::{Bounds3, Point3};
 ///
-/// // Three unit boxes in a row; a ray along the row, and a test that takes the box's left side for the primitive.
 /// let row: Vec<Bounds3> =
 ///     (0..3).map(|i| Bounds3::new(Point3::new(i as f64, 0.0, 0.0), Point3::new(i as f64 + 1.0, 1.0, 1.0))).collect();
 /// let bvh = Bvh::build(&row)?;
-/// let ray = Ray::new(Point3::new(-2.0, 0.5, 0.5), Vector3::X);
-/// let hit = bvh.closest(&ray, f64::INFINITY, |primitive, _t_max| Some(row[primitive as usize].min.x() + 2.0));
-/// assert_eq!(hit, Some((0, 2.0)));
+/// assert_eq!(bvh.bounds().max, Point3::new(3.0, 1.0, 1.0));
+/// assert_eq!(bvh.statistics().primitives, 3);
 /// # Ok::<(), snell::accel::BuildError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Bvh {
     /// Depth first: the first child of an inner node follows it at once. Empty where there is no primitive.
-    nodes: Vec<Node>,
+    pub(in crate::accel) nodes: Vec<Node>,
     /// What the leaves refer to: places in the caller's list.
-    primitives: Vec<u32>,
+    pub(in crate::accel) primitives: Vec<u32>,
     /// The largest absolute coordinate of the root's box: what the rounding error of a box test scales with.
-    extent: f64,
+    pub(in crate::accel) extent: f64,
     /// How many primitives are tested at once, at the cost of one.
     block: usize,
     /// The primitives that may be in several leaves, cut in pieces, each leaf having the box of its pieces.
@@ -69,25 +66,25 @@ pub struct Bvh {
 /// A node, 32 bytes so that none lies across two cache lines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(32))]
-struct Node {
+pub(in crate::accel) struct Node {
     /// Around everything below.
-    bounds: Box32,
+    pub(in crate::accel) bounds: Box32,
     /// Inner: how many nodes after this one the second child is. Leaf: the first of its places in `primitives`.
-    link: u32,
+    pub(in crate::accel) link: u32,
     /// How many primitives the leaf has; 0 marks an inner node.
-    count: u32,
+    pub(in crate::accel) count: u32,
 }
 
 const _: () = assert!(size_of::<Node>() == 32);
 
 impl Node {
-    fn is_leaf(&self) -> bool {
+    pub(in crate::accel) fn is_leaf(&self) -> bool {
         self.count > 0
     }
 
     /// A leaf's places in `primitives`.
     #[inline]
-    fn range(&self) -> std::ops::Range<usize> {
+    pub(in crate::accel) fn range(&self) -> std::ops::Range<usize> {
         let first = self.link as usize;
         first..first + self.count as usize
     }

@@ -57,6 +57,12 @@ impl RaySpace {
         })
     }
 
+    /// Which axes of space are the first, second and third: the third is the one the ray is longest on.
+    #[inline]
+    pub(super) fn axes(&self) -> [usize; 3] {
+        self.axes
+    }
+
     /// A corner in the space of the ray: two coordinates across it and one, not scaled, along it.
     #[inline]
     fn shear(&self, corner: [f32; 3]) -> [f64; 3] {

@@ -1,0 +1,180 @@
+//! A ray, prepared for filters in `f32` that never lose a hit.
+//!
+//! Rounding a far origin to `f32` would lose the ray. So it is started again, in `f64`, where it enters the box around
+//! everything: at the parameter `start`, from a point that is no further from zero than the box. From there it is measured
+//! by s = (t − start) · scale with the largest component of the direction for the scale, so that direction/scale has
+//! components of at most 1, one of them ±1, and s is as large as the tree's extent E (its largest absolute coordinate) at
+//! most, times a small number. Trees with E outside [2⁻⁴⁰, 2⁴⁰], and rays that rounding in `f64` leaves no digits of, are
+//! the business of [`Slabs`]: what follows may count on no overflow, and on no underflow that matters.
+//!
+//! **The box test.** With ε = 2⁻²⁴, e the new origin and d the new direction on one axis, and lo the plane that is met first:
+//!
+//! - e errs by 4 u (|origin| + E) from `f64`, u = 2⁻⁵³, and rounding it to `f32`, with the margin m added, by 2 ε E;
+//!   m = 2⁻²¹ E + 2⁻⁴⁵ (|origin| + E) is four times that, and what is left serves the primitive's own test, as in [`slabs`].
+//! - The sign of lo − (e + m) is that of the exact difference of these `f32` numbers. The difference, 1/d in `f32` from a
+//!   rounded d, and their product have relative errors of 4 ε together. So where the computed entry is not negative it is
+//!   at most (1 + 4 ε) times what it should be, and where the computed exit is not negative at least 1 − 4 ε times; an exit
+//!   that is negative belongs to a box that is behind. Exits, and the limit on s, are multiplied by 1 + 16 ε before they
+//!   are compared with entries.
+//! - A component below 2⁻⁴⁰ is taken for ±2⁻⁴⁰. Over the tree it moves the ray by less than 2⁻³⁷ E, which m covers. So
+//!   inverses are finite, and products of at most 2⁴³ · 2⁴⁰.
+//!
+//! [`slabs`]: super::slabs
+
+use snell_math::Ray;
+
+use super::simd::Eight;
+use super::slabs::Slabs;
+use super::{WideNode, WideTree};
+
+/// 1 + 16 ε.
+const WIDER: f32 = 1.0 + 16.0 * EPSILON;
+/// The relative rounding error of `f32`, 2⁻²⁴.
+pub const EPSILON: f32 = 0.5 * f32::EPSILON;
+/// The smallest component of a direction.
+const LEAST: f32 = 1.0 / (1_u64 << 40) as f32;
+/// The extents of trees that are tested in `f32`.
+const EXTENTS: std::ops::RangeInclusive<f64> = 1.0 / (1_u64 << 40) as f64..=(1_u64 << 40) as f64;
+
+/// A ray that starts where it enters a tree.
+#[derive(Clone, Copy, Debug)]
+pub struct Probe {
+    /// The ray parameter of the new origin.
+    pub start: f64,
+    /// The largest component of the direction: what the ray parameter is multiplied by.
+    pub scale: f64,
+    /// The new origin.
+    pub origin: [f64; 3],
+    /// The new direction.
+    pub direction: [f64; 3],
+    /// By how much boxes are grown on all sides.
+    margin: f64,
+    /// A bound for the error of coordinates relative to the new origin that `f64` makes.
+    pub error: f64,
+    /// The tree's largest absolute coordinate.
+    pub extent: f64,
+}
+
+/// How a ray goes through a tree.
+pub enum Approach {
+    /// Not at all.
+    Missed,
+    /// As most do.
+    Plain(Probe),
+    /// With numbers that only `f64` has room for.
+    Strange(Slabs),
+}
+
+impl WideTree {
+    /// Prepares a ray for this tree, between two parameters.
+    #[inline(always)]
+    pub fn approach(&self, ray: &Ray, t_min: f64, t_max: f64) -> Approach {
+        // False with NaN.
+        let is_range = t_min <= t_max;
+        if self.nodes.is_empty() || !is_range {
+            return Approach::Missed;
+        }
+        let (extent, reach, scale) = (self.extent, ray.origin.max_abs(), ray.direction.max_abs());
+        let error = 1.0 / (1_u64 << 45) as f64 * (reach + extent);
+        let margin = 1.0 / (1_u64 << 21) as f64 * extent + error;
+        let is_plain = EXTENTS.contains(&extent) && margin < 0.125 * extent && scale.is_normal();
+        let is_inside = t_min == 0.0 && self.bounds.contains_point(ray.origin);
+        let mut start = t_min;
+        if !(is_inside && is_plain) {
+            let slabs = Slabs::new(ray, extent);
+            match slabs.enter(&self.bounds, t_min, t_max) {
+                None => return Approach::Missed,
+                Some(enter) if is_plain && enter.is_finite() => start = enter,
+                Some(_) => return Approach::Strange(slabs),
+            }
+        }
+        let origin = ray.at(start);
+        let direction = ray.direction * (1.0 / scale);
+        if !(origin.max_abs() <= 1.5 * extent && direction.max_abs() >= 0.5) {
+            return Approach::Strange(Slabs::new(ray, extent));
+        }
+        let [origin, direction] = [origin.to_array(), direction.to_array()];
+        Approach::Plain(Probe { start, scale, origin, direction, margin, error, extent })
+    }
+}
+
+impl Probe {
+    /// The measure of a ray parameter, enlarged: no entry up to there is computed to be beyond.
+    #[inline(always)]
+    pub fn limit(&self, t_max: f64) -> f32 {
+        // A hit may be found, by rounding, in front of the start.
+        let s = (t_max - self.start) * self.scale;
+        let s = s as f32 * WIDER;
+        if s > 0.0 { s } else { 0.0 }
+    }
+
+    /// The measure of a ray parameter, reduced: what is in front of it there is in front of it in truth.
+    #[inline(always)]
+    pub fn surely_before(&self, t_max: f64) -> f32 {
+        // In `f64` it is off by two roundings of a number that is not much larger than what it is compared with.
+        let s = (t_max - self.start) * self.scale;
+        s as f32 * (1.0 - 16.0 * EPSILON)
+    }
+
+    /// As [`Probe::limit`], of an upper bound in the measure itself.
+    #[inline(always)]
+    pub fn widened(s: f32) -> f32 {
+        s * WIDER
+    }
+}
+
+/// A probe in all lanes, for box tests.
+#[derive(Clone, Copy)]
+pub struct BoxRay<F> {
+    near_origin: [F; 3],
+    far_origin: [F; 3],
+    inverse: [F; 3],
+    /// Which side of a box is met first: 0 the smaller, 1 the larger coordinate.
+    near_side: [usize; 3],
+    wider: F,
+}
+
+impl<F: Eight> BoxRay<F> {
+    #[inline(always)]
+    pub fn new(probe: &Probe) -> Self {
+        let mut near_side = [0; 3];
+        let (mut near_origin, mut far_origin, mut inverse) =
+            ([F::splat(0.0); 3], [F::splat(0.0); 3], [F::splat(0.0); 3]);
+        for axis in 0..3 {
+            let direction = probe.direction[axis] as f32;
+            let direction = if direction.abs() > LEAST { direction } else { LEAST.copysign(direction) };
+            let margin = probe.margin.copysign(probe.direction[axis]);
+            near_side[axis] = usize::from(direction.is_sign_negative());
+            near_origin[axis] = F::splat((probe.origin[axis] + margin) as f32);
+            far_origin[axis] = F::splat((probe.origin[axis] - margin) as f32);
+            inverse[axis] = F::splat(1.0 / direction);
+        }
+        Self { near_origin, far_origin, inverse, near_side, wider: F::splat(WIDER) }
+    }
+
+    /// Which children of a node the ray enters before the limit, and where it does, not before 0.
+    #[inline(always)]
+    pub(super) fn enter(&self, node: &WideNode, limit: F) -> (u32, F) {
+        let plane = |axis: usize, side: usize, origin: F| {
+            // Masked only to show that the index is in range.
+            F::load(&node.planes[axis][side & 1]).sub(origin).mul(self.inverse[axis])
+        };
+        let near = |axis: usize| plane(axis, self.near_side[axis], self.near_origin[axis]);
+        let far = |axis: usize| plane(axis, self.near_side[axis] ^ 1, self.far_origin[axis]);
+        let enter = near(0).max(near(1)).max(near(2).max(F::splat(0.0)));
+        let leave = far(0).min(far(1)).min(far(2)).mul(self.wider).min(limit);
+        (enter.le(leave), enter)
+    }
+}
+
+/// The bits of a child's entry in front of the child: keys that sort as the entries do, which are not negative.
+#[inline(always)]
+pub(super) fn key(enter: f32, child: u32) -> u64 {
+    u64::from(enter.to_bits()) << 32 | u64::from(child)
+}
+
+/// The entry of a [`key`].
+#[inline(always)]
+pub(super) fn entry_of(key: u64) -> f32 {
+    f32::from_bits((key >> 32) as u32)
+}

@@ -1,0 +1,292 @@
+//! Rays and meshes: the closest hit, any hit, all hits.
+//!
+//! What is met, and where, is decided by [`RaySpace::meet`] in `f64`, and by nothing else. The filter of [`blocks`] spares most
+//! triangles that test: those that are surely missed, and those that are surely met so far away that another one is surely
+//! nearer. A query for the closest hit keeps those surely met whose distances are too close to be told apart; about one triangle
+//! a ray is tested in `f64`. A query for any hit needs no `f64` at all where something is surely met in the range.
+//!
+//! [`blocks`]: super::blocks
+
+use std::ops::ControlFlow;
+
+use snell_math::Ray;
+
+use super::blocks::{BlockRay, TriangleBlock};
+use super::watertight::{Meeting, RaySpace};
+use super::{MeshHit, TriangleMesh};
+use crate::accel::wide::{Approach, BoxRay, Eight, Kernel, NONE, Probe, Visited, WIDTH, dispatch, number, take_lane};
+
+/// How many triangles that are surely met wait for the decision, at most.
+const WAITING: usize = 8;
+
+/// A triangle that is surely met.
+#[derive(Clone, Copy)]
+struct Waiting {
+    /// Not in front of this measure of the ray parameter.
+    low: f32,
+    block: u32,
+    lane: u32,
+}
+
+/// A search for the closest hit.
+pub(super) struct Search<'a> {
+    blocks: &'a [TriangleBlock],
+    space: &'a RaySpace,
+    t_min: f64,
+    /// Falls as hits are decided.
+    t_max: f64,
+    best: Option<(u32, Meeting)>,
+    waiting: [Waiting; WAITING],
+    count: usize,
+}
+
+impl<'a> Search<'a> {
+    #[inline(always)]
+    pub(super) fn new(blocks: &'a [TriangleBlock], space: &'a RaySpace, t_min: f64, t_max: f64) -> Self {
+        let waiting = [Waiting { low: 0.0, block: 0, lane: 0 }; WAITING];
+        Self { blocks, space, t_min, t_max, best: None, waiting, count: 0 }
+    }
+
+    /// Decides about one triangle.
+    #[inline]
+    fn decide(&mut self, block: &TriangleBlock, lane: usize) {
+        let Some(meeting) = self.space.meet(block.corners(lane)) else { return };
+        let triangle = number(block.triangles[lane]);
+        let wins_tie = || meeting.t == self.t_max && self.best.is_none_or(|(other, _)| triangle < other);
+        if self.t_min < meeting.t && (meeting.t < self.t_max || wins_tie()) {
+            self.t_max = meeting.t;
+            self.best = Some((triangle, meeting));
+        }
+    }
+
+    /// Decides about those that wait and are not surely beyond the limit.
+    #[inline]
+    fn settle(&mut self, limit: f32) {
+        for place in 0..std::mem::take(&mut self.count) {
+            let Waiting { low, block, lane } = self.waiting[place];
+            if low <= limit {
+                let blocks = self.blocks;
+                self.decide(&blocks[block as usize], lane as usize);
+            }
+        }
+    }
+
+    /// Looks at a leaf, and lowers the limit by what is found.
+    #[inline(always)]
+    pub(super) fn leaf<F: Eight>(&mut self, ray: &BlockRay<F>, probe: &Probe, leaf: u32, limit: &mut f32) {
+        let block = &self.blocks[leaf as usize];
+        let Some(verdict) = ray.look(block, F::splat(*limit)) else { return };
+        let (low, high) = (verdict.low.to_array(), verdict.high.to_array());
+        let (mut sure, mut unsure) = (verdict.sure, verdict.unsure);
+        while sure != 0 {
+            let lane = take_lane(&mut sure);
+            if low[lane] > *limit {
+                continue;
+            }
+            if low[lane] <= 0.0 {
+                // It may lie in front of the range, and must not shorten it.
+                unsure |= 1 << lane;
+                continue;
+            }
+            let end = Probe::widened(high[lane]);
+            if end < *limit {
+                *limit = end;
+            }
+            if self.count == WAITING {
+                self.make_room(*limit);
+                *limit = limit.min(probe.limit(self.t_max));
+            }
+            self.waiting[self.count] = Waiting { low: low[lane], block: leaf, lane: lane as u32 };
+            self.count += 1;
+        }
+        while unsure != 0 {
+            self.decide(block, take_lane(&mut unsure));
+            *limit = limit.min(probe.limit(self.t_max));
+        }
+    }
+
+    /// Forgets those that are surely beyond the limit; decides where that leaves no room.
+    #[cold]
+    fn make_room(&mut self, limit: f32) {
+        let mut kept = 0;
+        for place in 0..self.count {
+            if self.waiting[place].low <= limit {
+                self.waiting[kept] = self.waiting[place];
+                kept += 1;
+            }
+        }
+        self.count = kept;
+        if kept == WAITING {
+            self.settle(limit);
+        }
+    }
+
+    /// The closest hit, after all leaves have been looked at.
+    #[inline(always)]
+    pub(super) fn finish(mut self, limit: f32) -> Option<MeshHit> {
+        self.settle(limit);
+        self.best.map(|(triangle, meeting)| MeshHit::new(triangle, meeting))
+    }
+}
+
+struct Closest<'a> {
+    mesh: &'a TriangleMesh,
+    probe: &'a Probe,
+    search: Search<'a>,
+}
+
+impl Kernel for Closest<'_> {
+    type Output = Option<MeshHit>;
+    #[inline(always)]
+    fn run<F: Eight>(self) -> Option<MeshHit> {
+        let Self { mesh, probe, mut search } = self;
+        let (boxes, triangles) = (BoxRay::<F>::new(probe), BlockRay::<F>::new(probe, search.space));
+        let limit = mesh.tree.nearest(&boxes, probe.limit(search.t_max), |leaf, limit| {
+            search.leaf(&triangles, probe, leaf, limit);
+        });
+        search.finish(limit)
+    }
+}
+
+/// See [`TriangleMesh::intersect`].
+#[inline]
+pub(super) fn closest(mesh: &TriangleMesh, ray: &Ray, t_min: f64, t_max: f64) -> Option<MeshHit> {
+    let space = &RaySpace::new(ray)?;
+    let mut search = Search::new(&mesh.blocks, space, t_min, t_max);
+    match mesh.tree.approach(ray, t_min, t_max) {
+        Approach::Missed => None,
+        Approach::Plain(probe) => dispatch(mesh.set, Closest { mesh, probe: &probe, search }),
+        Approach::Strange(slabs) => {
+            // It never breaks, so there is nothing to know from its end.
+            let _ = mesh.tree.each_strange(&slabs, t_min, t_max, &mut |leaf| {
+                let block = &mesh.blocks[leaf as usize];
+                for lane in filled(block) {
+                    search.decide(block, lane);
+                }
+                ControlFlow::Continue(())
+            });
+            search.finish(0.0)
+        }
+    }
+}
+
+/// The lanes of a block that have a triangle.
+#[inline]
+fn filled(block: &TriangleBlock) -> impl Iterator<Item = usize> {
+    (0..WIDTH).take_while(|lane| block.triangles[*lane] != NONE)
+}
+
+struct Any<'a> {
+    mesh: &'a TriangleMesh,
+    probe: &'a Probe,
+    space: &'a RaySpace,
+    t_min: f64,
+    t_max: f64,
+}
+
+impl Kernel for Any<'_> {
+    type Output = bool;
+    #[inline(always)]
+    fn run<F: Eight>(self) -> bool {
+        let Self { mesh, probe, space, t_min, t_max } = self;
+        let (boxes, triangles) = (BoxRay::<F>::new(probe), BlockRay::<F>::new(probe, space));
+        let limit = probe.limit(t_max);
+        let surely_before = F::splat(probe.surely_before(t_max));
+        let visit = |leaf: u32| {
+            let block = &mesh.blocks[leaf as usize];
+            let Some(verdict) = triangles.look(block, F::splat(limit)) else { return ControlFlow::Continue(()) };
+            if verdict.sure & F::splat(0.0).lt(verdict.low) & verdict.high.le(surely_before) != 0 {
+                return ControlFlow::Break(());
+            }
+            let mut rest = verdict.sure | verdict.unsure;
+            while rest != 0 {
+                let meeting = space.meet(block.corners(take_lane(&mut rest)));
+                if meeting.is_some_and(|meeting| t_min < meeting.t && meeting.t <= t_max) {
+                    return ControlFlow::Break(());
+                }
+            }
+            ControlFlow::Continue(())
+        };
+        mesh.tree.each(&boxes, limit, visit).is_break()
+    }
+}
+
+/// See [`TriangleMesh::any`].
+#[inline]
+pub(super) fn any(mesh: &TriangleMesh, ray: &Ray, t_min: f64, t_max: f64) -> bool {
+    let Some(space) = &RaySpace::new(ray) else { return false };
+    match mesh.tree.approach(ray, t_min, t_max) {
+        Approach::Missed => false,
+        Approach::Plain(probe) => dispatch(mesh.set, Any { mesh, probe: &probe, space, t_min, t_max }),
+        Approach::Strange(_) => each(mesh, ray, t_min, t_max, |_| ControlFlow::Break(())).is_break(),
+    }
+}
+
+/// Finds all hits, each once.
+struct Once<'a, V> {
+    space: &'a RaySpace,
+    t_min: f64,
+    t_max: f64,
+    visited: Visited,
+    visit: V,
+}
+
+impl<V: FnMut(MeshHit) -> ControlFlow<()>> Once<'_, V> {
+    #[inline(always)]
+    fn decide(&mut self, block: &TriangleBlock, lane: usize) -> ControlFlow<()> {
+        match self.space.meet(block.corners(lane)) {
+            Some(meeting)
+                if self.t_min < meeting.t && meeting.t <= self.t_max && self.visited.is_new(block.triangles[lane]) =>
+            {
+                (self.visit)(MeshHit::new(number(block.triangles[lane]), meeting))
+            }
+            _ => ControlFlow::Continue(()),
+        }
+    }
+}
+
+struct Each<'a, 'b, V> {
+    mesh: &'a TriangleMesh,
+    probe: &'a Probe,
+    once: &'b mut Once<'a, V>,
+}
+
+impl<V: FnMut(MeshHit) -> ControlFlow<()>> Kernel for Each<'_, '_, V> {
+    type Output = ControlFlow<()>;
+    #[inline(always)]
+    fn run<F: Eight>(self) -> ControlFlow<()> {
+        let Self { mesh, probe, once } = self;
+        let (boxes, triangles) = (BoxRay::<F>::new(probe), BlockRay::<F>::new(probe, once.space));
+        let limit = probe.limit(once.t_max);
+        mesh.tree.each(&boxes, limit, |leaf| {
+            let block = &mesh.blocks[leaf as usize];
+            let Some(verdict) = triangles.look(block, F::splat(limit)) else { return ControlFlow::Continue(()) };
+            let mut candidates = verdict.sure | verdict.unsure;
+            while candidates != 0 {
+                once.decide(block, take_lane(&mut candidates))?;
+            }
+            ControlFlow::Continue(())
+        })
+    }
+}
+
+/// See [`TriangleMesh::for_each_hit`].
+#[inline]
+pub(super) fn each(
+    mesh: &TriangleMesh,
+    ray: &Ray,
+    t_min: f64,
+    t_max: f64,
+    visit: impl FnMut(MeshHit) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    let Some(space) = &RaySpace::new(ray) else { return ControlFlow::Continue(()) };
+    let mut once = Once { space, t_min, t_max, visited: Visited::default(), visit };
+    match mesh.tree.approach(ray, t_min, t_max) {
+        Approach::Missed => ControlFlow::Continue(()),
+        Approach::Plain(probe) => dispatch(mesh.set, Each { mesh, probe: &probe, once: &mut once }),
+        Approach::Strange(slabs) => mesh.tree.each_strange(&slabs, t_min, t_max, &mut |leaf| {
+            let block = &mesh.blocks[leaf as usize];
+            filled(block).try_for_each(|lane| once.decide(block, lane))
+        }),
+    }
+}
