@@ -14,6 +14,7 @@ mod item;
 mod partition;
 mod places;
 mod presplit;
+mod refit;
 mod split;
 mod subtree;
 mod traverse;
