@@ -41,6 +41,16 @@ impl Box32 {
         Bounds3::new(min, max)
     }
 
+    /// The smallest box around both.
+    pub(super) fn union(&self, other: &Self) -> Self {
+        let [[low, high], [other_low, other_high]] = [self.corners, other.corners];
+        let corners = [
+            [0, 1, 2].map(|axis| smaller(low[axis], other_low[axis])),
+            [0, 1, 2].map(|axis| larger(high[axis], other_high[axis])),
+        ];
+        Self { corners }
+    }
+
     /// What is in both boxes.
     pub(super) fn common(&self, other: &Self) -> Self {
         let [[low, high], [other_low, other_high]] = [self.corners, other.corners];

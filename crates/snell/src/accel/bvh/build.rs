@@ -41,6 +41,9 @@ pub enum BuildError {
     /// More boxes than 32-bit indices can serve.
     #[error("{0} primitives are too many for one hierarchy")]
     TooMany(usize),
+    /// A hierarchy can only be refitted to the primitives it was built from.
+    #[error("primitive {0} has a box now and had none, or the other way round")]
+    Changed(u32),
 }
 
 /// What the builder should know about how the hierarchy is used.
@@ -129,7 +132,7 @@ fn retain_filled(items: &mut Vec<Item>) {
     }
 }
 
-fn refuse(primitive: u32, bounds: &Bounds3) -> Option<BuildError> {
+pub(super) fn refuse(primitive: u32, bounds: &Bounds3) -> Option<BuildError> {
     if bounds.min.0.is_nan() || bounds.max.0.is_nan() {
         Some(BuildError::NotANumber(primitive))
     } else if bounds.is_empty() || bounds.is_finite() {

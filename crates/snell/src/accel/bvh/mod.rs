@@ -15,6 +15,7 @@ mod item;
 mod partition;
 mod places;
 mod presplit;
+mod refit;
 mod split;
 mod subtree;
 mod validate;
