@@ -46,15 +46,33 @@ impl FileAssets {
         if metadata.len() > limit {
             return Err(AssetError::TooLarge { size: metadata.len(), limit });
         }
-        let mut bytes = Vec::with_capacity(metadata.len() as usize);
         // What is no regular file, or grows meanwhile, may have more than was said.
-        file.take(limit + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+        let bytes = content(file.take(limit + 1), metadata.len() as usize).map_err(unreadable)?;
         if bytes.len() as u64 > limit {
             return Err(AssetError::TooLarge { size: bytes.len() as u64, limit });
         }
         self.read.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push(PathBuf::from(path));
-        Ok(bytes.into())
+        Ok(bytes)
     }
+}
+
+/// All that a source gives, which is said to be so many bytes: read right to where it stays, unless that is wrong.
+fn content(mut source: impl Read, expected: usize) -> std::io::Result<Arc<[u8]>> {
+    let mut bytes: Arc<[u8]> = std::iter::repeat_n(0, expected).collect();
+    let mut read = 0;
+    if let Some(place) = Arc::get_mut(&mut bytes) {
+        while read < expected {
+            match source.read(&mut place[read..]) {
+                Ok(0) => break,
+                Ok(count) => read += count,
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(error) => return Err(error),
+            }
+        }
+    }
+    let mut more = Vec::new();
+    source.read_to_end(&mut more)?;
+    if read == expected && more.is_empty() { Ok(bytes) } else { Ok([&bytes[..read], &more].concat().into()) }
 }
 
 impl Assets for FileAssets {
@@ -98,6 +116,15 @@ mod tests {
         assert_eq!(&*assets.read(path.to_str().unwrap()).unwrap(), b"hello");
         assert!(assets.has_read(&folder.path().join(".").join("a.bin")));
         assert!(!assets.has_read(&folder.path().join("b.bin")));
+    }
+
+    #[test]
+    fn all_is_read_whatever_length_was_promised() {
+        let bytes: Vec<u8> = (0..100).collect();
+        for expected in [0, 1, 99, 100, 101, 5000] {
+            assert_eq!(&*content(bytes.as_slice(), expected).unwrap(), bytes, "{expected}");
+        }
+        assert!(content([].as_slice(), 10).unwrap().is_empty());
     }
 
     #[test]

@@ -9,7 +9,7 @@ use std::borrow::Cow;
 
 use super::tree::{Key, Node, Place, Value};
 use crate::diagnostic::SourceId;
-use crate::reader::text::{parse_float, parse_integer};
+use crate::reader::text::{Decimal, digits};
 
 /// Tables and lists within each other, from which on it is left to the other parser to say where they become too many.
 const MAX_DEPTH: usize = 60;
@@ -151,7 +151,7 @@ impl<'t> Parser<'t> {
         loop {
             self.space()?;
             if matches!(self.peek(), None | Some(b'[')) {
-                return Some(self.entries.drain(base..).collect());
+                return Some(self.entries.split_off(base));
             }
             self.entry(base)?;
             self.end_of_line()?;
@@ -220,7 +220,7 @@ impl<'t> Parser<'t> {
                 return None;
             }
         }
-        Some(Value::List(self.items.drain(base..).collect()))
+        Some(Value::List(self.items.split_off(base)))
     }
 
     fn table(&mut self) -> Option<Value<'t>> {
@@ -236,7 +236,7 @@ impl<'t> Parser<'t> {
                 return None;
             }
         }
-        Some(Value::Table(self.entries.drain(base..).collect()))
+        Some(Value::Table(self.entries.split_off(base)))
     }
 
     /// A text on one line and without escapes.
@@ -263,15 +263,18 @@ impl<'t> Parser<'t> {
     /// A decimal number, or `true` or `false`.
     #[inline]
     fn word(&mut self) -> Option<Value<'t>> {
-        let rest = &self.bytes[self.at..];
-        let ends = |byte: &u8| matches!(byte, b' ' | b'\t' | b'\n' | b'\r' | b',' | b']' | b'}' | b'#');
-        let word = &rest[..rest.iter().position(ends).unwrap_or(rest.len())];
-        self.at += word.len();
-        match word {
-            b"true" => Some(Value::Boolean(true)),
-            b"false" => Some(Value::Boolean(false)),
-            _ => number(word),
-        }
+        let rest = &self.text[self.at..];
+        let (value, length) = if rest.starts_with("true") {
+            (Value::Boolean(true), 4)
+        } else if rest.starts_with("false") {
+            (Value::Boolean(false), 5)
+        } else {
+            number(rest)?
+        };
+        self.at += length;
+        // Whatever goes on here is another kind of value: a date, a number with underscores, or none at all.
+        let ends = |byte| matches!(byte, b' ' | b'\t' | b'\n' | b'\r' | b',' | b']' | b'}' | b'#');
+        self.peek().is_none_or(ends).then_some(value)
     }
 
     fn header(&mut self) -> Option<Header<'t>> {
@@ -385,34 +388,46 @@ fn is_control(byte: u8) -> bool {
     (byte < 0x20 && byte != b'\t') || byte == 0x7f
 }
 
-/// A decimal number as TOML writes it, without underscores.
-fn number(word: &[u8]) -> Option<Value<'static>> {
-    let digits = |from: usize| word[from..].iter().take_while(|byte| byte.is_ascii_digit()).count();
-    let sign = usize::from(matches!(word.first(), Some(b'+' | b'-')));
-    let whole = digits(sign);
-    if whole == 0 || (whole > 1 && word[sign] == b'0') {
+/// The decimal number that a text begins with, and its length.
+#[inline]
+fn number(text: &str) -> Option<(Value<'static>, usize)> {
+    let bytes = text.as_bytes();
+    let mut decimal = Decimal { negative: bytes.first() == Some(&b'-'), ..Decimal::default() };
+    let sign = usize::from(decimal.negative || bytes.first() == Some(&b'+'));
+    let whole = digits(bytes, sign, &mut decimal.mantissa);
+    if whole == 0 || (whole > 1 && bytes[sign] == b'0') {
         return None;
     }
     let mut end = sign + whole;
-    if end == word.len() {
-        return parse_integer(word).map(Value::Integer);
-    }
-    if word[end] == b'.' {
-        let fraction = digits(end + 1);
+    decimal.digits = whole;
+    let mut is_whole = true;
+    if bytes.get(end) == Some(&b'.') {
+        let fraction = digits(bytes, end + 1, &mut decimal.mantissa);
         if fraction == 0 {
             return None;
         }
+        is_whole = false;
         end += 1 + fraction;
+        decimal.digits += fraction;
+        decimal.exponent = -(fraction as i32);
     }
-    if matches!(word.get(end), Some(b'e' | b'E')) {
-        let sign = usize::from(matches!(word.get(end + 1), Some(b'+' | b'-')));
-        let power = if end + 1 + sign <= word.len() { digits(end + 1 + sign) } else { 0 };
-        if power == 0 {
+    if matches!(bytes.get(end), Some(b'e' | b'E')) {
+        let minus = bytes.get(end + 1) == Some(&b'-');
+        let first = end + 1 + usize::from(minus || bytes.get(end + 1) == Some(&b'+'));
+        let mut power = 0;
+        let length = digits(bytes, first, &mut power);
+        if length == 0 || length > 4 {
             return None;
         }
-        end += 1 + sign + power;
+        is_whole = false;
+        end = first + length;
+        decimal.exponent += if minus { -(power as i32) } else { power as i32 };
     }
-    if end < word.len() { None } else { parse_float(word).map(Value::Float) }
+    let value = match is_whole {
+        true => Value::Integer(decimal.integer()?),
+        false => Value::Float(decimal.float().or_else(|| text[..end].parse().ok())?),
+    };
+    Some((value, end))
 }
 
 #[cfg(test)]

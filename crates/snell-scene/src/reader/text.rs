@@ -131,24 +131,55 @@ pub(crate) fn parse_float(text: &[u8]) -> Option<f64> {
     simple_float(text).or_else(|| std::str::from_utf8(text).ok()?.parse().ok())
 }
 
+/// The digits of a number and its power of ten.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Decimal {
+    pub negative: bool,
+    /// The number that its digits are; wrapped around where there are very many.
+    pub mantissa: u64,
+    /// How many digits there are.
+    pub digits: usize,
+    /// The power of ten that the mantissa is multiplied by.
+    pub exponent: i32,
+}
+
+impl Decimal {
+    /// The correctly rounded number, where it is simple enough for that.
+    #[inline]
+    pub fn float(&self) -> Option<f64> {
+        // No more than 18 digits, and so without overflow.
+        if self.digits > 18 || self.mantissa > 1 << 53 || self.exponent.unsigned_abs() > 22 {
+            return None;
+        }
+        let power = TENS[self.exponent.unsigned_abs() as usize];
+        let value = if self.exponent < 0 { self.mantissa as f64 / power } else { self.mantissa as f64 * power };
+        Some(if self.negative { -value } else { value })
+    }
+
+    /// The digits as a whole number, where they are 18 at most.
+    #[inline]
+    pub fn integer(&self) -> Option<i64> {
+        let value = if self.negative { -(self.mantissa as i64) } else { self.mantissa as i64 };
+        (self.digits <= 18).then_some(value)
+    }
+}
+
 /// The fast path: `None` where the number is not simple enough, or none.
 #[inline]
 fn simple_float(text: &[u8]) -> Option<f64> {
-    let negative = text.first() == Some(&b'-');
-    let start = usize::from(negative || text.first() == Some(&b'+'));
     // Longer ones seldom are simple.
     if text.len() > 20 {
         return None;
     }
-    let mut mantissa = 0;
-    let whole = digits(text, start, &mut mantissa);
-    let (mut end, mut count) = (start + whole, whole);
-    let mut scale = 0;
+    let mut decimal = Decimal { negative: text.first() == Some(&b'-'), ..Decimal::default() };
+    let mut end = usize::from(decimal.negative || text.first() == Some(&b'+'));
+    decimal.digits = digits(text, end, &mut decimal.mantissa);
+    end += decimal.digits;
     if text.get(end) == Some(&b'.') {
-        let fraction = digits(text, end + 1, &mut mantissa);
+        let fraction = digits(text, end + 1, &mut decimal.mantissa);
         end += 1 + fraction;
-        count += fraction;
-        scale = -(fraction as i32);
+        decimal.digits += fraction;
+        decimal.exponent = -(fraction as i32);
     }
     if end < text.len() {
         if text[end] | 0x20 != b'e' {
@@ -161,20 +192,14 @@ fn simple_float(text: &[u8]) -> Option<f64> {
         if length == 0 || length > 4 || first + length < text.len() {
             return None;
         }
-        scale += if minus { -(power as i32) } else { power as i32 };
+        decimal.exponent += if minus { -(power as i32) } else { power as i32 };
     }
-    // No more than 18 digits, and so without overflow.
-    if count == 0 || count > 18 || mantissa > 1 << 53 || scale.unsigned_abs() > 22 {
-        return None;
-    }
-    let power = TENS[scale.unsigned_abs() as usize];
-    let value = if scale < 0 { mantissa as f64 / power } else { mantissa as f64 * power };
-    Some(if negative { -value } else { value })
+    if decimal.digits == 0 { None } else { decimal.float() }
 }
 
 /// How many digits stand from a place on; they are appended to `number`, which wraps around.
 #[inline]
-fn digits(text: &[u8], start: usize, number: &mut u64) -> usize {
+pub(crate) fn digits(text: &[u8], start: usize, number: &mut u64) -> usize {
     let mut count = 0;
     for &byte in text.get(start..).unwrap_or_default() {
         let digit = byte.wrapping_sub(b'0');
