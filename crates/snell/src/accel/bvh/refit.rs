@@ -61,8 +61,8 @@ mod tests {
     use snell_math::{Point3, Ray, Vector3};
 
     use super::*;
-    use crate::accel::BuildOptions;
     use crate::accel::random::Random;
+    use crate::accel::{BuildOptions, WideBvh};
 
     fn boxes(count: usize, random: &mut Random) -> Vec<Bounds3> {
         let cube = |p: Point3| Bounds3::new(p, p).grown(0.02);
@@ -82,6 +82,7 @@ mod tests {
 
     /// The boxes that rays meet, by the tree and by brute force: how many rays have another answer.
     fn wrong_answers(bvh: &Bvh, bounds: &[Bounds3]) -> usize {
+        let bvh = WideBvh::from_binary(bvh);
         let mut random = Random(22);
         (0..500)
             .filter(|_| {
