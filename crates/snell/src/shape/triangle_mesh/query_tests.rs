@@ -10,7 +10,7 @@ use super::blocks::BlockRay;
 use super::watertight::{Meeting, RaySpace};
 use super::*;
 use crate::accel::random::Random;
-use crate::accel::wide::{Approach, Eight, Kernel, Probe, WIDTH, dispatch};
+use crate::accel::wide::{Approach, Eight, Kernel, Probe, WIDTH, dispatch, number};
 
 /// Kinds of meshes that filters have fallen over.
 #[derive(Clone, Copy, Debug)]
@@ -189,7 +189,7 @@ impl Kernel for Look<'_> {
             let Some(verdict) = ray.look(block, F::splat(f32::INFINITY)) else { continue };
             let (low, high) = (verdict.low.to_array(), verdict.high.to_array());
             for lane in (0..WIDTH).filter(|lane| (verdict.sure | verdict.unsure) >> lane & 1 == 1) {
-                found.push((block.triangles[lane], verdict.sure >> lane & 1 == 1, low[lane], high[lane]));
+                found.push((number(block.triangles[lane]), verdict.sure >> lane & 1 == 1, low[lane], high[lane]));
             }
         }
         found
