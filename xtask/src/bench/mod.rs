@@ -165,7 +165,7 @@ pub fn run(mut arguments: Arguments) -> Outcome {
             Err(reason) => failures.push(format!("{}: {reason}", group.name)),
         }
     }
-    summarize(&bench.scratch, &verdicts, wanted.is_empty() && write_docs)?;
+    summarize(&bench.scratch, &verdicts, write_docs)?;
     if failures.is_empty() { Ok(()) } else { Err(failures.join("\n")) }
 }
 
@@ -184,17 +184,22 @@ fn keep(bench: &Bench, name: &str, section: &Section, write_docs: bool) -> Outco
     );
     println!("\n{text}");
     bench.write(&format!("{name}.md"), text.as_bytes())?;
+    bench.write(&format!("{name}-bars.md"), report::bars(&section.verdicts).as_bytes())?;
     if write_docs { docs::write(name, &text) } else { Ok(()) }
 }
 
-/// The table of the bars, and the documentation's where all were measured.
+/// Prints the bars of this run; the documentation's table has those of every benchmark's last run.
 fn summarize(scratch: &Path, verdicts: &[Verdict], write_docs: bool) -> Outcome {
-    let table = report::bars(verdicts);
-    if !table.is_empty() {
-        println!("{table}");
+    if !verdicts.is_empty() {
+        println!("{}{}", report::BARS, report::bars(verdicts));
     }
     println!("Reports are in {}", scratch.display());
-    if write_docs { docs::write("bars", &table) } else { Ok(()) }
+    if !write_docs {
+        return Ok(());
+    }
+    // What has never run here has no file, and no rows.
+    let rows = GROUPS.iter().map(|group| std::fs::read_to_string(scratch.join(format!("{}-bars.md", group.name))));
+    docs::write("bars", &format!("{}{}", report::BARS, rows.filter_map(Result::ok).collect::<String>()))
 }
 
 /// The groups, one a line.
