@@ -21,7 +21,7 @@ pub use settings::RenderSettings;
 
 use crate::camera::Camera;
 use crate::compile::CompiledScene;
-use crate::film::{Film, PixelSum};
+use crate::film::{Film, FilmTiles};
 use crate::geometry::Hit;
 use crate::integrator::{Integrator, Rules, Whitted};
 use crate::observe::{NoObserver, RayTree};
@@ -203,9 +203,8 @@ fn split_place([x, y]: [u32; 2], sample: u32) -> u32 {
     BAYER[y as usize % 4][x as usize % 4] + sample
 }
 
-/// What the tiles have given so far.
+/// What the tiles have given so far besides samples.
 struct Gathered {
-    film: Film,
     contrast: Option<Contrast>,
     first_hits: Option<FirstHits>,
     statistics: Statistics,
@@ -216,11 +215,11 @@ impl<I: Integrator> Job<'_, I> {
         let RenderSettings { width, height, .. } = *self.settings;
         let passes = self.settings.passes();
         let gathered = Mutex::new(Gathered {
-            film: Film::new(width, height),
             contrast: self.settings.is_adaptive().then(|| Contrast::new(width, height)),
             first_hits: self.settings.layers.then(|| FirstHits::new(width, height)),
             statistics: Statistics::default(),
         });
+        let mut film = if passes.len() > 1 { Film::new(width, height) } else { Film::of_one_pass(width, height) };
         let mut complete = true;
         for (number, samples) in passes.into_iter().enumerate() {
             let samples = Samples::new(samples);
@@ -230,9 +229,10 @@ impl<I: Integrator> Job<'_, I> {
             };
             let tiles = self.tiles(pixels.as_deref());
             progress.pass(number as u32, tiles.iter().map(|tile| tile.len() as u64).sum());
+            let film = film.tiles();
             tiles.par_iter().for_each_init(Scratch::default, |scratch, tile| {
                 if !progress.is_cancelled() {
-                    self.render_tile(tile, &samples, scratch, &gathered, progress);
+                    self.render_tile(tile, &samples, scratch, &film, &gathered, progress);
                 }
             });
             complete = !progress.is_cancelled();
@@ -240,8 +240,8 @@ impl<I: Integrator> Job<'_, I> {
                 break;
             }
         }
-        let Gathered { film, first_hits, statistics, .. } = gathered.into_inner().unwrap_or_else(|e| e.into_inner());
-        Rendering { image: film.develop(), layers: first_hits.map(FirstHits::into_layers), statistics, complete }
+        let Gathered { first_hits, statistics, .. } = gathered.into_inner().unwrap_or_else(|e| e.into_inner());
+        Rendering { image: film.into_image(), layers: first_hits.map(FirstHits::into_layers), statistics, complete }
     }
 
     /// Takes the samples of a range of the sequence in each pixel of a tile.
@@ -250,13 +250,13 @@ impl<I: Integrator> Job<'_, I> {
         tile: &[u32],
         samples: &Samples,
         scratch: &mut Scratch,
+        film: &FilmTiles<'_>,
         gathered: &Mutex<Gathered>,
         progress: &dyn Progress,
     ) {
         let per_pixel = samples.places.len();
         let mut statistics = Statistics::default();
         let display = self.settings.is_adaptive().then(|| Display::new(self.settings));
-        let mut sums: Vec<PixelSum> = Vec::new();
         let mut ranges: Vec<Range> = Vec::new();
         let mut first_hits: Vec<FirstHit> = Vec::new();
         // As many pixels at once as keep the queues in the caches.
@@ -278,23 +278,16 @@ impl<I: Integrator> Job<'_, I> {
             let watch: Option<&mut dyn FnMut(usize, &Ray, &mut Option<Hit>)> =
                 if is_watched { Some(&mut watch) } else { None };
             let colors = self.tracer().trace(&rays, scratch, &mut statistics, &mut NoObserver, watch);
+            statistics.nonfinite_samples += film.add(pixels, colors);
             // All that can be done before the lock.
-            sums.clear();
-            sums.extend(colors.chunks(per_pixel).map(|colors| {
-                let mut sum = PixelSum::default();
-                for &color in colors {
-                    statistics.nonfinite_samples += u64::from(!sum.add(color));
-                }
-                sum
-            }));
             ranges.clear();
             if let Some(display) = display {
                 ranges.extend(colors.chunks(per_pixel).map(|colors| display.range(colors)));
             }
-            let mut gathered = lock(gathered);
-            for (&pixel, sum) in pixels.iter().zip(&sums) {
-                gathered.film.add(pixel as usize, sum);
+            if display.is_none() && !self.settings.layers {
+                continue;
             }
+            let mut gathered = lock(gathered);
             if let Some(contrast) = &mut gathered.contrast {
                 for (&pixel, range) in pixels.iter().zip(&ranges) {
                     contrast.add(pixel as usize, range);
