@@ -4,7 +4,7 @@ use std::fs::{self, OpenOptions};
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
-use snell::image::{BitDepth, DisplayImage, ExrOptions, PngOptions, encode_exr, encode_png};
+use snell::image::{BitDepth, DisplayImage, ExrOptions, PngOptions, encode_exr, encode_png, encode_png_of_light};
 use snell::render::{RenderSettings, Rendering};
 use snell::scene::Diagnostic;
 use tempfile::NamedTempFile;
@@ -205,9 +205,13 @@ fn put_in_place(path: &Path, bytes: &[u8]) -> io::Result<()> {
 fn encode(format: Format, rendering: &Rendering, settings: &RenderSettings) -> Result<Vec<u8>, Failure> {
     let encoded = match format {
         Format::Png(depth) => {
-            let display = DisplayImage::develop(&rendering.image, settings.tone_curve(), settings.exposure, depth);
+            let (light, tone, exposure) = (&rendering.image, settings.tone_curve(), settings.exposure);
             let text = vec![("Software".to_owned(), SOFTWARE.to_owned())];
-            encode_png(&display, &PngOptions { text, ..PngOptions::default() })
+            let options = PngOptions { text, ..PngOptions::default() };
+            match depth {
+                BitDepth::Eight => encode_png_of_light(light, tone, exposure, &options),
+                BitDepth::Sixteen => encode_png(&DisplayImage::develop(light, tone, exposure, depth), &options),
+            }
         }
         Format::Exr => {
             let options = ExrOptions { software: Some(SOFTWARE.to_owned()), ..ExrOptions::default() };

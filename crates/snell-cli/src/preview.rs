@@ -7,7 +7,7 @@ use std::io::IsTerminal;
 
 use snell::image::preview::{half_blocks, iterm2, kitty};
 use snell::image::resize::{fit, resize};
-use snell::image::{BitDepth, DisplayImage, Image, PngOptions, encode_png};
+use snell::image::{BitDepth, DisplayImage, Image, PngOptions, encode_png_of_light};
 use snell::math::Rgb;
 use snell::render::RenderSettings;
 use snell::scene::Diagnostic;
@@ -88,8 +88,7 @@ pub fn text(kind: Kind, light: &Image<Rgb>, settings: &RenderSettings) -> Result
             half_blocks_256(&DisplayImage::develop(&small, tone, exposure, BitDepth::Eight))
         }
         Kind::Kitty | Kind::Iterm2 => {
-            let display = DisplayImage::develop(light, tone, exposure, BitDepth::Eight);
-            let png = encode_png(&display, &PngOptions::default())
+            let png = encode_png_of_light(light, tone, exposure, &PngOptions::default())
                 .map_err(|error| Failure::input(Diagnostic::error(error.to_string())))?;
             if kind == Kind::Kitty { kitty(&png, Some(columns)) } else { iterm2(&png, Some(columns)) }
         }

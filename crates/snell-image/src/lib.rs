@@ -38,6 +38,7 @@ pub use decode::{DecodeError, Format, Limits, Picture, decode, decode_display};
 pub use display::{BitDepth, Developer, DisplayImage, Samples};
 pub use encode::{
     EncodeError, ExrOptions, ExrPrecision, PngEffort, PngOptions, PngStrip, PngStrips, encode_exr, encode_png,
+    encode_png_of_light,
 };
 pub use image::{Image, Layers, WrongPixelCount};
 pub use tone::ToneCurve;

@@ -93,6 +93,58 @@ impl Encoder {
     }
 }
 
+/// Tells whether two values differ visibly: whether `linear_to_srgb(high) - linear_to_srgb(low)`, both as
+/// `snell_math::color` has them, is more than a threshold. It is exactly what the formula says, and seldom asks it.
+///
+/// ```
+/// use snell_image::transfer::EncodedDifference;
+/// let difference = EncodedDifference::new(0.03);
+/// assert!(difference.is_exceeded(0.000, 0.003) && !difference.is_exceeded(0.500, 0.503));
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct EncodedDifference {
+    knots: &'static [f32],
+    threshold: f32,
+}
+
+impl EncodedDifference {
+    /// More than the difference of two interpolated values can be away from that of the reference's: two errors, and what
+    /// subtraction rounds.
+    const MARGIN: f32 = 1e-6;
+
+    /// For a threshold between encoded values.
+    #[must_use]
+    pub fn new(threshold: f32) -> Self {
+        Self { knots: &CURVE, threshold }
+    }
+
+    /// Whether two values, clipped to [0, 1], differ by more than the threshold; never where one is NaN.
+    #[inline]
+    #[must_use]
+    pub fn is_exceeded(self, low: f32, high: f32) -> bool {
+        let about = self.about(high) - self.about(low);
+        if (about - self.threshold).abs() > Self::MARGIN {
+            about > self.threshold
+        } else {
+            linear_to_srgb(high) - linear_to_srgb(low) > self.threshold
+        }
+    }
+
+    /// The encoded value of a number in [0, 1], by the table where the curve is no straight line; else NaN.
+    #[inline]
+    fn about(self, linear: f32) -> f32 {
+        if linear > STRAIGHT_END && linear < 1.0 {
+            interpolated(self.knots, linear.to_bits() - FIRST_BITS)
+        } else if linear <= STRAIGHT_END {
+            linear * 12.92
+        } else if linear == 1.0 {
+            1.0
+        } else {
+            f32::NAN
+        }
+    }
+}
+
 /// The curve at a number, given by how many steps of `f32` it is above the first knot.
 #[inline]
 fn interpolated(knots: &[f32], offset: u32) -> f32 {
@@ -177,6 +229,36 @@ mod tests {
             })
             .reduce(|| 0.0, f64::max);
         assert!(worst < ERROR_BOUND, "the interpolation is up to {worst:e} away from the reference");
+    }
+
+    /// The first pair whose difference is judged otherwise than by the formula.
+    fn first_misjudged(difference: EncodedDifference, threshold: f32) -> Option<(f32, f32)> {
+        let special = [0.0, 1e-9, 0.003, STRAIGHT_END, STRAIGHT_END.next_up(), 0.0032, 0.5, 1.0_f32.next_down(), 1.0];
+        let lows = special.into_iter().chain((0..600).map(|i| i as f32 / 613.0));
+        let pairs = lows.flat_map(|low| {
+            // Around the value that is just as far away as the threshold, and anywhere.
+            let edge = srgb_to_linear((linear_to_srgb(low) + threshold).min(1.0));
+            let around = (-30..30).map(move |step| f32::from_bits(edge.to_bits().saturating_add_signed(step)).min(1.0));
+            around.chain((0..40).map(|i| i as f32 / 39.0)).chain(special).map(move |high| (low, high))
+        });
+        let plain = |(low, high): (f32, f32)| linear_to_srgb(high) - linear_to_srgb(low) > threshold;
+        pairs.into_iter().find(|&pair| difference.is_exceeded(pair.0, pair.1) != plain(pair))
+    }
+
+    #[test]
+    fn differences_are_judged_as_the_formula_says() {
+        for threshold in [0.03, 0.2, 1e-4] {
+            assert_eq!(first_misjudged(EncodedDifference::new(threshold), threshold), None);
+        }
+        let difference = EncodedDifference::new(0.03);
+        assert!(!difference.is_exceeded(f32::NAN, 1.0) && !difference.is_exceeded(0.0, f32::NAN));
+        assert!(difference.is_exceeded(0.5, f32::INFINITY) && difference.is_exceeded(0.5, 2.0));
+        assert!(!difference.is_exceeded(f32::INFINITY, f32::NEG_INFINITY), "no samples at all");
+    }
+
+    #[test]
+    fn a_difference_that_is_off_by_a_bit_would_be_seen() {
+        assert!(first_misjudged(EncodedDifference::new(0.03), 0.03_f32.next_up()).is_some());
     }
 
     #[test]

@@ -5,7 +5,7 @@ pub(crate) mod exr;
 mod png;
 
 pub use exr::{ExrOptions, ExrPrecision, encode_exr};
-pub use png::{PngEffort, PngOptions, PngStrip, PngStrips, encode_png};
+pub use png::{PngEffort, PngOptions, PngStrip, PngStrips, encode_png, encode_png_of_light};
 
 /// Why a picture was not encoded.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -8,15 +8,13 @@
 use rayon::prelude::*;
 use snell_image::Image;
 use snell_image::tone::{ToneCurve, exposure_scale};
+use snell_image::transfer::EncodedDifference;
 use snell_math::Rgb;
-use snell_math::color::linear_to_srgb;
 
 use super::settings::RenderSettings;
 
 /// The least difference between display values, in [0, 1], that calls for more samples: about eight steps of 255.
 const THRESHOLD: f32 = 0.03;
-/// The slope of the sRGB encoding at black, which is its largest.
-const STEEPEST: f32 = 12.92;
 /// Rows of a picture that are judged together.
 const ROWS: usize = 16;
 
@@ -26,6 +24,8 @@ pub struct Display {
     tone: ToneCurve,
     /// The factor before the tone curve.
     exposure: f32,
+    /// What differs too much.
+    threshold: EncodedDifference,
 }
 
 /// The least and the largest value of some samples, component by component: display-linear and clipped to [0, 1], so before the
@@ -38,7 +38,11 @@ pub struct Range {
 
 impl Display {
     pub fn new(settings: &RenderSettings) -> Self {
-        Self { tone: settings.tone_curve(), exposure: exposure_scale(settings.exposure) }
+        Self {
+            tone: settings.tone_curve(),
+            exposure: exposure_scale(settings.exposure),
+            threshold: EncodedDifference::new(THRESHOLD),
+        }
     }
 
     /// The range of samples as they are shown.
@@ -47,6 +51,11 @@ impl Display {
             let shown = self.tone.apply(sample * self.exposure).map(|c| c.clamp(0.0, 1.0)).to_array();
             range.including(&Range { low: shown, high: shown })
         })
+    }
+
+    /// Whether the values of a range, sRGB-encoded, differ by more than the threshold in any component.
+    pub fn is_wide(&self, range: &Range) -> bool {
+        (0..3).any(|i| self.threshold.is_exceeded(range.low[i], range.high[i]))
     }
 }
 
@@ -61,15 +70,6 @@ impl Range {
             self.high[i] = if other.high[i] > self.high[i] { other.high[i] } else { self.high[i] };
         }
         self
-    }
-
-    /// Whether the values, sRGB-encoded, differ by more than the threshold in any component.
-    pub fn is_wide(&self) -> bool {
-        (0..3).any(|i| {
-            let (low, high) = (self.low[i], self.high[i]);
-            // The encoding is nowhere steeper than where it begins, so most differences are too small without asking it.
-            high - low > 0.99 * THRESHOLD / STEEPEST && linear_to_srgb(high) - linear_to_srgb(low) > THRESHOLD
-        })
     }
 }
 
@@ -101,7 +101,8 @@ pub fn unsettled(picture: &Image<Rgb>, display: &Display) -> Vec<bool> {
             }
             for (x, unsettled) in unsettled.iter_mut().enumerate() {
                 let neighbours = &columns[x.saturating_sub(1)..(x + 2).min(width)];
-                *unsettled = neighbours.iter().fold(Range::EMPTY, |sum, column| sum.including(column)).is_wide();
+                let around = neighbours.iter().fold(Range::EMPTY, |sum, column| sum.including(column));
+                *unsettled = display.is_wide(&around);
             }
         }
     });

@@ -351,7 +351,7 @@ impl<I: Integrator> Job<'_, I> {
             if progress.is_cancelled() {
                 return;
             }
-            refined.retain(|pixel| pixel.range.is_wide());
+            refined.retain(|pixel| display.is_wide(&pixel.range));
         }
     }
 

@@ -125,7 +125,7 @@ fn what_is_different_is_judged_as_it_is_shown() {
     // Later a pixel's own samples count and not its neighbours'.
     let scene = ball();
     let display = Display::new(&settings(&scene, 2, 1));
-    let own = |samples: [f32; 2]| display.range(&samples.map(Rgb::gray)).is_wide();
+    let own = |samples: [f32; 2]| display.is_wide(&display.range(&samples.map(Rgb::gray)));
     assert_eq!([own([0.1, 0.9]), own([0.9, 0.9])], [true, false]);
 }
 
@@ -145,7 +145,7 @@ fn neighbours_are_those_of_all_sides() {
                 let near: Vec<Rgb> = near
                     .filter_map(|(x, y)| picture.get(u32::try_from(x).ok()?, u32::try_from(y).ok()?).copied())
                     .collect();
-                display.range(&near).is_wide()
+                display.is_wide(&display.range(&near))
             })
             .collect();
         let check = |found: &[bool]| assert_eq!(found, expected, "{width} x {height}");

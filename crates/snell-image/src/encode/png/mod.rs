@@ -11,11 +11,12 @@ mod strips;
 
 use png::{ColorType, Compression, Encoder, SrgbRenderingIntent};
 use rayon::prelude::*;
+use snell_math::Rgb;
 
 pub use strips::{PngStrip, PngStrips};
 
 use super::EncodeError;
-use crate::{BitDepth, DisplayImage, Samples};
+use crate::{BitDepth, Developer, DisplayImage, Image, Samples, ToneCurve};
 
 /// How a PNG is written.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -65,6 +66,40 @@ pub fn encode_png(image: &DisplayImage, options: &PngOptions) -> Result<Vec<u8>,
             Ok(file)
         }
     }
+}
+
+/// Develops scene-linear light and encodes it as a PNG of 8 bits: the same bytes as [`DisplayImage::develop`] and
+/// [`encode_png`] give with [`PngEffort::Fast`], a strip at a time, so that what a strip needs stays in the caches.
+///
+/// # Errors
+/// As [`encode_png`].
+///
+/// ```
+/// use snell_image::{BitDepth, DisplayImage, Image, PngOptions, ToneCurve, encode_png, encode_png_of_light};
+/// use snell_math::Rgb;
+/// let light = Image::from_fn(40, 50, |x, y| Rgb::new(x as f32 / 30.0, y as f32 / 30.0, 0.1));
+/// let display = DisplayImage::develop(&light, ToneCurve::Filmic, 1.0, BitDepth::Eight);
+/// let options = PngOptions::default();
+/// assert_eq!(encode_png_of_light(&light, ToneCurve::Filmic, 1.0, &options)?, encode_png(&display, &options)?);
+/// # Ok::<(), snell_image::EncodeError>(())
+/// ```
+pub fn encode_png_of_light(
+    light: &Image<Rgb>,
+    tone: ToneCurve,
+    exposure: f32,
+    options: &PngOptions,
+) -> Result<Vec<u8>, EncodeError> {
+    let (width, height) = light.size();
+    let png = PngStrips::new(width, height, BitDepth::Eight, options)?;
+    let developer = Developer::new(tone, exposure);
+    let rows_of_strips = light.pixels().par_chunks(width as usize * PngStrips::ROWS as usize);
+    let strips = rows_of_strips.enumerate().map(|(strip, rows)| {
+        let mut codes = vec![0; rows.len() * 3];
+        developer.develop(rows, &mut codes);
+        png.encode(strip as u32, &codes)
+    });
+    let strips = strips.collect::<Result<Vec<_>, _>>()?;
+    Ok(png.finish(&strips))
 }
 
 fn failed(error: png::EncodingError) -> EncodeError {
