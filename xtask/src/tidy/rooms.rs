@@ -77,10 +77,24 @@ const ROOMS: &[Room] = &[
         name: "drawing",
         may_use: &["viewing", "vector", "plot", "shape", "outline", "camera", "geometry", "compile"],
     },
-    Room { name: "trace", may_use: &["optics", "statistics", "task", "observe", "geometry", "compile", "integrator"] },
+    Room {
+        name: "trace",
+        may_use: &["optics", "statistics", "interaction", "task", "observe", "geometry", "compile", "integrator"],
+    },
     Room {
         name: "render",
-        may_use: &["viewing", "camera", "film", "statistics", "observe", "geometry", "compile", "integrator", "trace"],
+        may_use: &[
+            "viewing",
+            "camera",
+            "film",
+            "statistics",
+            "task",
+            "observe",
+            "geometry",
+            "compile",
+            "integrator",
+            "trace",
+        ],
     },
 ];
 

@@ -12,7 +12,7 @@ use super::{Geometry, Hit, InnerHit, LocalPlace, QueryScratch, TOUCHING, Touchin
 use crate::accel::Candidate;
 use crate::interaction::{SolidId, SurfaceInteraction, SurfaceRows};
 use crate::shape::{LanePlanes, LaneRay, LaneSpheres, SurfacePoint};
-use crate::task::{RayRows, column, set_column};
+use crate::task::{QuestionRows, RayRows, column, set_column};
 
 /// The nearest hits of eight rays.
 #[derive(Clone, Copy, Debug)]
@@ -243,18 +243,19 @@ impl Geometry {
 
     /// What is in the way of shadow rays side by side, from place `at` of the rows on, as [`Geometry::gather_blockers`]; where
     /// `any_blocks`, everything blocks, as in [`Geometry::is_blocked`]. Lanes count from `at`.
-    #[expect(clippy::too_many_arguments, reason = "a ray's parts, and where results go")]
     #[inline(always)]
     pub(crate) fn block_lanes<L: Lanes>(
         &self,
-        ray: &LaneRay<L>,
-        distance: L,
+        rows: &QuestionRows,
+        at: usize,
         active: Bits,
         any_blocks: bool,
-        single: impl Fn(usize) -> (Ray, f64),
         blockers: &mut Blockers,
         scratch: &mut QueryScratch,
     ) {
+        let ray =
+            &LaneRay { origin: LaneVector::load(&rows.origin, at), direction: LaneVector::load(&rows.direction, at) };
+        let distance = L::load(&rows.distance, at);
         blockers.blocked = Bits::NONE;
         blockers.hits.clear();
         let world = &self.world;
@@ -285,7 +286,7 @@ impl Geometry {
                 }
                 _ => {
                     for lane in open.lanes() {
-                        let (ray, distance) = single(lane);
+                        let (ray, distance) = (rows.ray(at + lane), rows.distance[at + lane]);
                         let keep = |hit| blockers.hits.push((lane as u8, hit));
                         if self.is_blocked_by(index, primitive, &ray, distance, any_blocks, keep, scratch) {
                             blockers.blocked |= Bits::lane(lane);
@@ -296,7 +297,7 @@ impl Geometry {
         }
         if world.handful.is_empty() && world.first_alone > 0 {
             for lane in active.without(blockers.blocked).lanes() {
-                let (ray, distance) = single(lane);
+                let (ray, distance) = (rows.ray(at + lane), rows.distance[at + lane]);
                 if self.is_blocked_by_bounded(&ray, distance, any_blocks, lane, &mut blockers.hits, scratch) {
                     blockers.blocked |= Bits::lane(lane);
                 }

@@ -282,7 +282,7 @@ impl<I: Integrator> Job<'_, I> {
             let rays = TileRays { camera: self.camera, width, pixels, samples };
             let mut watch = |number: usize, ray: &Ray, hit: &mut Option<Hit>| {
                 self.cut_far(ray, hit);
-                if self.settings.layers && number % per_pixel == 0 {
+                if self.settings.layers && number.is_multiple_of(per_pixel) {
                     first_hits.push(FirstHit::new(self.scene, self.camera, ray, hit.as_ref()));
                 }
             };

@@ -37,7 +37,7 @@ impl Sphere {
     #[inline]
     fn span(&self, ray: &Ray) -> Option<Span> {
         let (met, [enter, leave]) = LaneSpheres::<f64>::from(self).span(&LaneRay::from(ray));
-        met.any().then(|| Span { enter: ShapeHit { t: enter, part: 0 }, leave: ShapeHit { t: leave, part: 0 } })
+        met.any().then_some(Span { enter: ShapeHit { t: enter, part: 0 }, leave: ShapeHit { t: leave, part: 0 } })
     }
 
     /// See [`super::Shape::intersect`].

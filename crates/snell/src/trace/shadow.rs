@@ -5,7 +5,7 @@
 //! that comes from the rarer side, which is symmetric: a straight ray can not meet total internal reflection. Bodies nest as
 //! they do for other rays, by the same stack.
 
-use snell_math::lanes::{Bits, LaneColor, LaneVector, Lanes, WIDTH};
+use snell_math::lanes::{Bits, LaneColor, Lanes, WIDTH};
 use snell_math::{Ray, Rgb};
 use snell_scene::scene::Shadows;
 
@@ -13,7 +13,6 @@ use crate::compile::CompiledScene;
 use crate::geometry::{Blockers, Geometry, Hit, QueryScratch};
 use crate::observe::Observer;
 use crate::optics;
-use crate::shape::LaneRay;
 use crate::statistics::Statistics;
 use crate::task::{Inside, MediumStack, MediumStacks, QuestionRows, ShadowQuestion, column, set_column};
 
@@ -55,14 +54,10 @@ pub fn answer<L: Lanes, O: Observer>(
     let mut transmittance = [[1.0; WIDTH]; 3];
     if context.shadows != Shadows::None {
         statistics.shadow_rays += u64::from(active.count());
-        let origin = LaneVector::<L>::load(&rows.origin, at);
-        let ray = LaneRay { origin, direction: LaneVector::load(&rows.direction, at) };
-        let distance = L::load(&rows.distance, at);
-        let single = |lane: usize| (rows.ray(at + lane), rows.distance[at + lane]);
         let any_blocks = context.shadows == Shadows::Opaque;
         let ShadowScratch { blockers, hits } = scratch;
         let geometry = &context.scene.geometry;
-        geometry.block_lanes(&ray, distance, active, any_blocks, single, blockers, context.query);
+        geometry.block_lanes::<L>(rows, at, active, any_blocks, blockers, context.query);
         blocked = blockers.blocked;
         if !any_blocks {
             let is_filtered = |lane: &usize| rows.media[at + lane] != MediumStack::EMPTY;

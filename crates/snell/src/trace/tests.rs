@@ -139,7 +139,7 @@ fn what_is_taken_from_a_camera_ray_is_not_there() {
     let tracer = Tracer { scene: &scene, integrator: &integrator, rules: RULES, instructions: InstructionSet::best() };
     let (mut scratch, mut statistics) = (Scratch::default(), Statistics::default());
     let mut take = |number: usize, _: &Ray, hit: &mut Option<Hit>| {
-        if number % 2 == 0 {
+        if number.is_multiple_of(2) {
             *hit = None;
         }
     };
