@@ -5,6 +5,7 @@
 //! All lengths are in the mesh's own space. A ray's direction need not have unit length; `t` is the ray parameter.
 
 mod blocks;
+mod many;
 mod queries;
 mod topology;
 mod watertight;
@@ -166,6 +167,29 @@ impl TriangleMesh {
     #[inline]
     pub fn intersect(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<MeshHit> {
         queries::closest(self, ray, t_min, t_max)
+    }
+
+    /// [`TriangleMesh::intersect`] of many rays, each with its own largest t: the same hits, sooner where the mesh is larger than
+    /// the processor's caches. The rays may be in any order and of any kind.
+    ///
+    /// ```
+    /// # use snell::shape::triangle_mesh::TriangleMesh;
+    /// # use snell_math::{Point3, Ray, Vector3};
+    /// # use snell_scene::scene::Mesh;
+    /// # let positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    /// # let mesh = TriangleMesh::new(&Mesh { positions, triangles: vec![[0, 1, 2]], ..Mesh::default() })?;
+    /// let rays = [0.25, 2.0].map(|x| Ray::new(Point3::new(x, 0.25, 1.0), -Vector3::Z));
+    /// let mut hits = [None; 2];
+    /// mesh.intersect_many(&rays, 0.0, &[f64::INFINITY; 2], &mut hits);
+    /// assert_eq!(hits.map(|hit| hit.map(|hit| hit.t)), [Some(1.0), None]);
+    /// # Ok::<(), snell::shape::triangle_mesh::MeshError>(())
+    /// ```
+    ///
+    /// # Panics
+    /// Where there are not as many rays, largest t and places for hits.
+    pub fn intersect_many(&self, rays: &[Ray], t_min: f64, t_max: &[f64], hits: &mut [Option<MeshHit>]) {
+        assert!(rays.len() == t_max.len() && rays.len() == hits.len(), "as many rays as limits and places for hits");
+        many::closest(self, rays, t_min, t_max, hits);
     }
 
     /// The hit of a ray with one triangle, worked out again from what is worth keeping of it: the triangle and t. Of a ray

@@ -14,6 +14,7 @@
 
 mod collapse;
 mod memory;
+mod path;
 mod primitives;
 mod probe;
 mod shared;
@@ -29,7 +30,8 @@ pub use primitives::{Candidate, WideBvh};
 pub use validate::WideDefect;
 
 pub(crate) use memory::roomy;
-pub(crate) use probe::{Approach, BoxRay, EPSILON, Probe};
+pub(crate) use path::Path;
+pub(crate) use probe::{Approach, BoxLine, BoxRay, EPSILON, Probe, splat};
 pub(crate) use shared::{NONE, Visited, number};
 pub(crate) use simd::{Eight, Kernel, WIDTH, dispatch};
 pub(crate) use traverse::take_lane;

@@ -11,11 +11,11 @@
 //!
 //! - e errs by 4 u (|origin| + E) from `f64`, u = 2⁻⁵³, and rounding it to `f32`, with the margin m added, by 2 ε E;
 //!   m = 2⁻²¹ E + 2⁻⁴⁵ (|origin| + E) is four times that, and what is left serves the primitive's own test, as in [`slabs`].
-//! - The sign of lo − (e + m) is that of the exact difference of these `f32` numbers. The difference, 1/d in `f32` from a
-//!   rounded d, and their product have relative errors of 4 ε together. So where the computed entry is not negative it is
+//! - The sign of lo − (e + m) is that of the exact difference of these `f32` numbers. The difference, 1/d in `f32` and
+//!   their product have relative errors of 4 ε together. So where the computed entry is not negative it is
 //!   at most (1 + 4 ε) times what it should be, and where the computed exit is not negative at least 1 − 4 ε times; an exit
-//!   that is negative belongs to a box that is behind. Exits, and the limit on s, are multiplied by 1 + 16 ε before they
-//!   are compared with entries.
+//!   that is negative belongs to a box that is behind. Exits, by way of the inverse, and the limit on s are multiplied by
+//!   1 + 16 ε before they are compared with entries.
 //! - A component below 2⁻⁴⁰ is taken for ±2⁻⁴⁰. Over the tree it moves the ray by less than 2⁻³⁷ E, which m covers. So
 //!   inverses are finite, and products of at most 2⁴³ · 2⁴⁰.
 //!
@@ -47,6 +47,8 @@ pub struct Probe {
     pub origin: [f64; 3],
     /// The new direction.
     pub direction: [f64; 3],
+    /// One by the new direction, infinite where that is zero.
+    inverse: [f64; 3],
     /// By how much boxes are grown on all sides.
     margin: f64,
     /// A bound for the error of coordinates relative to the new origin that `f64` makes.
@@ -89,13 +91,23 @@ impl WideTree {
             }
         }
         let origin = ray.at(start);
-        let direction = ray.direction * (1.0 / scale);
+        // The divisions wait for nothing, and the largest component is the one of the smallest inverse.
+        let inverse = ray.direction.to_array().map(|x| 1.0 / x);
+        let [x, y, z] = inverse.map(f64::abs);
+        let direction = ray.direction * smaller(smaller(x, y), z);
         if !(origin.max_abs() <= 1.5 * extent && direction.max_abs() >= 0.5) {
             return Approach::Strange(Slabs::new(ray, extent));
         }
         let [origin, direction] = [origin.to_array(), direction.to_array()];
-        Approach::Plain(Probe { start, scale, origin, direction, margin, error, extent })
+        let inverse = inverse.map(|x| x * scale);
+        Approach::Plain(Probe { start, scale, origin, direction, inverse, margin, error, extent })
     }
+}
+
+/// The smaller one; without the care for NaN that the one of the library takes.
+#[inline(always)]
+fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
 }
 
 impl Probe {
@@ -123,46 +135,88 @@ impl Probe {
     }
 }
 
-/// A probe in all lanes, for box tests.
+/// A probe, made ready for box tests.
+#[derive(Clone, Copy, Debug)]
+pub struct BoxLine {
+    near_origin: [f32; 3],
+    far_origin: [f32; 3],
+    inverse: [f32; 3],
+    /// The inverse, enlarged.
+    far_inverse: [f32; 3],
+    /// Which side of a box is met first: 0 the smaller, 1 the larger coordinate.
+    near_side: [usize; 3],
+}
+
+impl BoxLine {
+    /// Of a probe.
+    #[inline(always)]
+    pub fn new(probe: &Probe) -> Self {
+        let zero = [0.0; 3];
+        let mut line =
+            Self { near_origin: zero, far_origin: zero, inverse: zero, far_inverse: zero, near_side: [0; 3] };
+        for axis in 0..3 {
+            // Of a tiny component the largest inverse that there may be, with its sign.
+            let magnitude = smaller(probe.inverse[axis].abs(), 1.0 / f64::from(LEAST));
+            let direction = probe.direction[axis];
+            let margin = probe.margin.copysign(direction);
+            line.near_side[axis] = usize::from(direction.is_sign_negative());
+            line.near_origin[axis] = (probe.origin[axis] + margin) as f32;
+            line.far_origin[axis] = (probe.origin[axis] - margin) as f32;
+            line.inverse[axis] = magnitude.copysign(direction) as f32;
+            line.far_inverse[axis] = line.inverse[axis] * WIDER;
+        }
+        line
+    }
+}
+
+/// A [`BoxLine`] in all lanes.
 #[derive(Clone, Copy)]
 pub struct BoxRay<F> {
     near_origin: [F; 3],
     far_origin: [F; 3],
     inverse: [F; 3],
-    /// Which side of a box is met first: 0 the smaller, 1 the larger coordinate.
+    far_inverse: [F; 3],
     near_side: [usize; 3],
-    wider: F,
 }
 
 impl<F: Eight> BoxRay<F> {
+    /// Of a probe.
     #[inline(always)]
     pub fn new(probe: &Probe) -> Self {
-        let mut near_side = [0; 3];
-        let (mut near_origin, mut far_origin, mut inverse) =
-            ([F::splat(0.0); 3], [F::splat(0.0); 3], [F::splat(0.0); 3]);
-        for axis in 0..3 {
-            let direction = probe.direction[axis] as f32;
-            let direction = if direction.abs() > LEAST { direction } else { LEAST.copysign(direction) };
-            let margin = probe.margin.copysign(probe.direction[axis]);
-            near_side[axis] = usize::from(direction.is_sign_negative());
-            near_origin[axis] = F::splat((probe.origin[axis] + margin) as f32);
-            far_origin[axis] = F::splat((probe.origin[axis] - margin) as f32);
-            inverse[axis] = F::splat(1.0 / direction);
+        Self::spread(&BoxLine::new(probe))
+    }
+
+    /// Of what was made ready.
+    #[inline(always)]
+    pub fn spread(line: &BoxLine) -> Self {
+        Self {
+            near_origin: splat(&line.near_origin),
+            far_origin: splat(&line.far_origin),
+            inverse: splat(&line.inverse),
+            far_inverse: splat(&line.far_inverse),
+            near_side: line.near_side,
         }
-        Self { near_origin, far_origin, inverse, near_side, wider: F::splat(WIDER) }
+    }
+
+    /// Where the ray meets the nearer planes of an axis.
+    #[inline(always)]
+    fn near(&self, node: &WideNode, axis: usize) -> F {
+        // Masked only to show that the index is in range.
+        F::load(&node.planes[axis][self.near_side[axis] & 1]).sub(self.near_origin[axis]).mul(self.inverse[axis])
+    }
+
+    /// Where the ray meets the farther planes of an axis, enlarged.
+    #[inline(always)]
+    fn far(&self, node: &WideNode, axis: usize) -> F {
+        let planes = F::load(&node.planes[axis][self.near_side[axis] & 1 ^ 1]);
+        planes.sub(self.far_origin[axis]).mul(self.far_inverse[axis])
     }
 
     /// Which children of a node the ray enters before the limit, and where it does, not before 0.
     #[inline(always)]
     pub(super) fn enter(&self, node: &WideNode, limit: F) -> (u32, F) {
-        let plane = |axis: usize, side: usize, origin: F| {
-            // Masked only to show that the index is in range.
-            F::load(&node.planes[axis][side & 1]).sub(origin).mul(self.inverse[axis])
-        };
-        let near = |axis: usize| plane(axis, self.near_side[axis], self.near_origin[axis]);
-        let far = |axis: usize| plane(axis, self.near_side[axis] ^ 1, self.far_origin[axis]);
-        let enter = near(0).max(near(1)).max(near(2).max(F::splat(0.0)));
-        let leave = far(0).min(far(1)).min(far(2)).mul(self.wider).min(limit);
+        let enter = self.near(node, 0).max(self.near(node, 1)).max(self.near(node, 2).max(F::splat(0.0)));
+        let leave = self.far(node, 0).min(self.far(node, 1)).min(self.far(node, 2).min(limit));
         (enter.le(leave), enter)
     }
 }
@@ -177,4 +231,10 @@ pub(super) fn key(enter: f32, child: u32) -> u64 {
 #[inline(always)]
 pub(super) fn entry_of(key: u64) -> f32 {
     f32::from_bits((key >> 32) as u32)
+}
+
+/// Each of three numbers in all lanes.
+#[inline(always)]
+pub fn splat<F: Eight>([x, y, z]: &[f32; 3]) -> [F; 3] {
+    [F::splat(*x), F::splat(*y), F::splat(*z)]
 }

@@ -40,8 +40,8 @@ pub trait Eight: Copy {
     fn lt(self, other: Self) -> u32;
     /// Where this is less or equal; never with NaN.
     fn le(self, other: Self) -> u32;
-    /// Runs work compiled for these instructions.
-    fn stage<R>(work: impl FnOnce() -> R) -> R;
+    /// Asks for memory that will soon be read.
+    fn prefetch<T>(place: &T);
 }
 
 /// What can be done with any kind of [`Eight`].
@@ -57,9 +57,7 @@ pub trait Kernel {
 pub fn dispatch<K: Kernel>(set: InstructionSet, kernel: K) -> K::Output {
     match set {
         #[cfg(target_arch = "x86_64")]
-        InstructionSet::Avx2 | InstructionSet::Avx512 if is_x86_feature_detected!("avx2") => {
-            x86::Avx2::stage(|| kernel.run::<x86::Avx2>())
-        }
+        InstructionSet::Avx2 | InstructionSet::Avx512 if is_x86_feature_detected!("avx2") => x86::run(kernel),
         _ => kernel.run::<Portable>(),
     }
 }
@@ -134,20 +132,30 @@ impl Eight for Portable {
         self.mask(other, |a, b| a <= b)
     }
     #[inline(always)]
-    fn stage<R>(work: impl FnOnce() -> R) -> R {
-        work()
-    }
+    fn prefetch<T>(_: &T) {}
 }
 
 #[cfg(target_arch = "x86_64")]
 mod x86 {
     use std::arch::x86_64::*;
 
-    use super::{Eight, WIDTH};
+    use super::{Eight, Kernel, WIDTH};
 
     /// By AVX2.
     #[derive(Clone, Copy)]
     pub struct Avx2(__m256);
+
+    /// Runs a kernel compiled for these instructions. There is no closure between them and the kernel: it would be compiled for
+    /// every machine, and where the compiler does not inline it, every instruction would become a call.
+    #[inline]
+    pub fn run<K: Kernel>(kernel: K) -> K::Output {
+        #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
+        fn with_instructions<K: Kernel>(kernel: K) -> K::Output {
+            kernel.run::<Avx2>()
+        }
+        // SAFETY: as above; every machine with AVX2 has the instructions that count bits.
+        unsafe { with_instructions(kernel) }
+    }
 
     impl Eight for Avx2 {
         #[inline(always)]
@@ -218,13 +226,12 @@ mod x86 {
             unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0)) as u32 }
         }
         #[inline(always)]
-        fn stage<R>(work: impl FnOnce() -> R) -> R {
-            #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
-            fn with_instructions<R>(work: impl FnOnce() -> R) -> R {
-                work()
+        fn prefetch<T>(place: &T) {
+            let start = std::ptr::from_ref(place).cast::<i8>();
+            for line in (0..size_of::<T>()).step_by(64) {
+                // SAFETY: within the object; and a prefetch reads nothing.
+                unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(line)) };
             }
-            // SAFETY: as above; every machine with AVX2 has the instructions that count bits.
-            unsafe { with_instructions(work) }
         }
     }
 }

@@ -9,50 +9,51 @@ use std::ops::ControlFlow;
 use super::probe::{BoxRay, entry_of, key};
 use super::simd::{Eight, WIDTH};
 use super::slabs::Slabs;
-use super::{LEAF, STACK, WideTree};
+use super::{LEAF, STACK, WideNode, WideTree};
 
-/// A stack of fixed size whose memory is not cleared: that would cost more than a short way through the tree.
-struct Stack<T> {
-    items: [MaybeUninit<T>; STACK],
-    height: usize,
-}
+/// The places of a stack: a power of two, so that an index is held in range by a mask.
+const PLACES: usize = STACK.next_power_of_two();
+
+/// The memory of a stack of fixed size. It is not cleared: that would cost more than a short way through the tree. The height is
+/// a number beside it, which can so be kept in a register.
+pub(super) struct Stack<T>([MaybeUninit<T>; PLACES]);
 
 impl<T: Copy> Stack<T> {
     #[inline(always)]
-    fn new() -> Self {
-        Self { items: [const { MaybeUninit::uninit() }; STACK], height: 0 }
+    pub(super) fn new() -> Self {
+        Self([const { MaybeUninit::uninit() }; PLACES])
     }
 
     #[inline(always)]
-    fn push(&mut self, item: T) {
-        self.items[self.height].write(item);
-        self.height += 1;
+    pub(super) fn push(&mut self, height: &mut usize, item: T) {
+        self.0[*height & (PLACES - 1)].write(item);
+        *height += 1;
     }
 
     #[inline(always)]
-    fn pop(&mut self) -> Option<T> {
-        self.height = self.height.checked_sub(1)?;
-        // SAFETY: everything below the height was written by `push`.
-        Some(unsafe { self.items[self.height].assume_init() })
+    pub(super) fn pop(&mut self, height: &mut usize) -> Option<T> {
+        *height = height.checked_sub(1)?;
+        // SAFETY: everything below the height was written by `push`, and there are never more than `STACK`.
+        Some(unsafe { self.0[*height & (PLACES - 1)].assume_init() })
     }
 }
 
 impl Stack<u64> {
     /// Puts a key where it belongs among those from `base` on, the smallest on top.
     #[inline(always)]
-    fn insert(&mut self, key: u64, base: usize) {
-        self.push(key);
-        let mut place = self.height - 1;
+    pub(super) fn insert(&mut self, height: &mut usize, key: u64, base: usize) {
+        let mut place = *height;
         while place > base {
+            let below = self.0[(place - 1) & (PLACES - 1)];
             // SAFETY: everything below the height was written by `push`.
-            let below = unsafe { self.items[place - 1].assume_init() };
-            if below >= key {
+            if unsafe { below.assume_init() } >= key {
                 break;
             }
-            self.items[place].write(below);
+            self.0[place & (PLACES - 1)] = below;
             place -= 1;
         }
-        self.items[place].write(key);
+        self.0[place & (PLACES - 1)].write(key);
+        *height += 1;
     }
 }
 
@@ -65,44 +66,55 @@ pub fn take_lane(mask: &mut u32) -> usize {
     lane & (WIDTH - 1)
 }
 
+/// Of the children that are entered, one at least, the one that is entered first; the others wait, the nearest on top.
+#[inline(always)]
+pub(super) fn go_on<F: Eight>(
+    node: &WideNode,
+    entered: &mut u32,
+    enter: F,
+    stack: &mut Stack<u64>,
+    height: &mut usize,
+) -> u32 {
+    let first = take_lane(entered);
+    if *entered == 0 {
+        return node.children[first];
+    }
+    let enter = enter.to_array();
+    let key = |lane: usize| key(enter[lane], node.children[lane]);
+    let (a, b) = (key(first), key(take_lane(entered)));
+    let (mut nearest, other) = if a < b { (a, b) } else { (b, a) };
+    let base = *height;
+    stack.push(height, other);
+    while *entered != 0 {
+        let mut next = key(take_lane(entered));
+        if next < nearest {
+            std::mem::swap(&mut next, &mut nearest);
+        }
+        stack.insert(height, next, base);
+    }
+    nearest as u32
+}
+
 impl WideTree {
     /// Gives the leaves that a ray enters before the limit to `visit`, the nearer ones first as far as boxes tell. It is
     /// given the limit too, and may lower it. Returns the last limit.
     #[inline(always)]
     pub fn nearest<F: Eight>(&self, ray: &BoxRay<F>, mut limit: f32, mut visit: impl FnMut(u32, &mut f32)) -> f32 {
-        let mut stack = Stack::new();
+        let (mut stack, mut height) = (Stack::new(), 0);
         let mut current = 0_u32;
         loop {
             if current & LEAF == 0 {
                 let node = &self.nodes[current as usize];
                 let (mut entered, enter) = ray.enter(node, F::splat(limit));
                 if entered != 0 {
-                    let first = take_lane(&mut entered);
-                    if entered == 0 {
-                        current = node.children[first];
-                        continue;
-                    }
-                    let enter = enter.to_array();
-                    let key = |lane: usize| key(enter[lane], node.children[lane]);
-                    let (a, b) = (key(first), key(take_lane(&mut entered)));
-                    let (mut nearest, other) = if a < b { (a, b) } else { (b, a) };
-                    let base = stack.height;
-                    stack.push(other);
-                    while entered != 0 {
-                        let mut next = key(take_lane(&mut entered));
-                        if next < nearest {
-                            std::mem::swap(&mut next, &mut nearest);
-                        }
-                        stack.insert(next, base);
-                    }
-                    current = nearest as u32;
+                    current = go_on(node, &mut entered, enter, &mut stack, &mut height);
                     continue;
                 }
             } else {
                 visit(current & !LEAF, &mut limit);
             }
             loop {
-                let Some(next) = stack.pop() else { return limit };
+                let Some(next) = stack.pop(&mut height) else { return limit };
                 if entry_of(next) <= limit {
                     current = next as u32;
                     break;
@@ -132,7 +144,7 @@ impl WideTree {
         t_max: f64,
         visit: &mut dyn FnMut(u32) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let enters = |node: &super::WideNode| {
+        let enters = |node: &WideNode| {
             let enters = |lane: usize| node.has(lane) && slabs.enter(&node.bounds(lane), t_min, t_max).is_some();
             (0..WIDTH).fold(0, |mask, lane| mask | u32::from(enters(lane)) << lane)
         };
@@ -143,13 +155,13 @@ impl WideTree {
     #[inline(always)]
     pub(super) fn each_where(
         &self,
-        enters: impl Fn(&super::WideNode) -> u32,
+        enters: impl Fn(&WideNode) -> u32,
         mut visit: impl FnMut(u32) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         if self.nodes.is_empty() {
             return ControlFlow::Continue(());
         }
-        let mut stack = Stack::new();
+        let (mut stack, mut height) = (Stack::new(), 0);
         let mut current = 0_u32;
         loop {
             if current & LEAF == 0 {
@@ -161,14 +173,14 @@ impl WideTree {
                     while entered != 0 {
                         let lane = (u32::BITS - 1 - entered.leading_zeros()) as usize & (WIDTH - 1);
                         entered &= !(1 << lane);
-                        stack.push(node.children[lane]);
+                        stack.push(&mut height, node.children[lane]);
                     }
                     continue;
                 }
             } else {
                 visit(current & !LEAF)?;
             }
-            match stack.pop() {
+            match stack.pop(&mut height) {
                 Some(next) => current = next,
                 None => return ControlFlow::Continue(()),
             }

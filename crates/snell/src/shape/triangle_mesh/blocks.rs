@@ -26,7 +26,7 @@
 //! [`watertight`]: super::watertight
 
 use super::watertight::RaySpace;
-use crate::accel::wide::{EPSILON, Eight, NONE, Probe, WIDTH, number};
+use crate::accel::wide::{EPSILON, Eight, NONE, Probe, WIDTH, number, splat};
 
 /// Eight triangles, in the order of their numbers. Five cache lines.
 #[derive(Clone, Copy, Debug)]
@@ -54,6 +54,12 @@ impl TriangleBlock {
         Self { corners, triangles }
     }
 
+    /// A coordinate of a corner of one triangle.
+    #[inline(always)]
+    pub(super) fn coordinate(&self, lane: usize, corner: usize, axis: usize) -> f32 {
+        self.corners[corner][axis][lane & (WIDTH - 1)]
+    }
+
     /// The corners of one triangle.
     #[inline(always)]
     pub(super) fn corners(&self, lane: usize) -> [[f32; 3]; 3] {
@@ -61,17 +67,41 @@ impl TriangleBlock {
     }
 }
 
-/// A probe in all lanes, for triangles.
-#[derive(Clone, Copy)]
-pub(super) struct BlockRay<F> {
+/// A probe, made ready for triangles.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BlockLine {
     /// Which axes of space are called first, second and third.
     axes: [usize; 3],
-    origin: [F; 3],
-    /// The direction's first and second components, the third being ±1.
-    slopes: [F; 2],
-    /// The sign of the third.
-    sign: F,
+    origin: [f32; 3],
+    /// The direction's first and second components, and the third, ±1.
+    direction: [f32; 3],
     /// δ.
+    error: f32,
+}
+
+impl BlockLine {
+    #[inline(always)]
+    pub(super) fn new(probe: &Probe, space: &RaySpace) -> Self {
+        let axes @ [first, second, third] = space.axes();
+        let error = 24.0 * f64::from(EPSILON) * probe.extent + 2.0 * probe.error;
+        let (o, d) = (&probe.origin, &probe.direction);
+        Self {
+            axes,
+            origin: [o[first] as f32, o[second] as f32, o[third] as f32],
+            direction: [d[first] as f32, d[second] as f32, d[third] as f32],
+            error: error as f32,
+        }
+    }
+}
+
+/// A [`BlockLine`] in all lanes.
+#[derive(Clone, Copy)]
+pub(super) struct BlockRay<F> {
+    axes: [usize; 3],
+    origin: [F; 3],
+    slopes: [F; 2],
+    /// The sign of the third component of the direction.
+    sign: F,
     error: F,
     /// 2 δ.
     twice: F,
@@ -91,15 +121,20 @@ pub(super) struct Verdict<F> {
 impl<F: Eight> BlockRay<F> {
     #[inline(always)]
     pub(super) fn new(probe: &Probe, space: &RaySpace) -> Self {
-        let axes = space.axes();
-        let error = 24.0 * f64::from(EPSILON) * probe.extent + 2.0 * probe.error;
+        Self::spread(&BlockLine::new(probe, space))
+    }
+
+    /// Of what was made ready.
+    #[inline(always)]
+    pub(super) fn spread(line: &BlockLine) -> Self {
+        let [first, second, sign] = splat(&line.direction);
         Self {
-            axes,
-            origin: axes.map(|axis| F::splat(probe.origin[axis] as f32)),
-            slopes: [F::splat(probe.direction[axes[0]] as f32), F::splat(probe.direction[axes[1]] as f32)],
-            sign: F::splat(probe.direction[axes[2]] as f32),
-            error: F::splat(error as f32),
-            twice: F::splat(2.0 * error as f32),
+            axes: line.axes,
+            origin: splat(&line.origin),
+            slopes: [first, second],
+            sign,
+            error: F::splat(line.error),
+            twice: F::splat(2.0 * line.error),
         }
     }
 

@@ -31,7 +31,7 @@ struct Waiting {
 /// A search for the closest hit.
 pub(super) struct Search<'a> {
     blocks: &'a [TriangleBlock],
-    space: &'a RaySpace,
+    space: RaySpace,
     t_min: f64,
     /// Falls as hits are decided.
     t_max: f64,
@@ -42,15 +42,27 @@ pub(super) struct Search<'a> {
 
 impl<'a> Search<'a> {
     #[inline(always)]
-    pub(super) fn new(blocks: &'a [TriangleBlock], space: &'a RaySpace, t_min: f64, t_max: f64) -> Self {
+    pub(super) fn new(blocks: &'a [TriangleBlock], space: &RaySpace, t_min: f64, t_max: f64) -> Self {
         let waiting = [Waiting { low: 0.0, block: 0, lane: 0 }; WAITING];
-        Self { blocks, space, t_min, t_max, best: None, waiting, count: 0 }
+        Self { blocks, space: *space, t_min, t_max, best: None, waiting, count: 0 }
+    }
+
+    #[inline(always)]
+    pub(super) fn space(&self) -> &RaySpace {
+        &self.space
     }
 
     /// Decides about one triangle.
     #[inline]
     fn decide(&mut self, block: &TriangleBlock, lane: usize) {
-        let Some(meeting) = self.space.meet(block.corners(lane)) else { return };
+        if let Some(meeting) = self.space.meet(block.corners(lane)) {
+            self.take(block, lane, meeting);
+        }
+    }
+
+    /// Takes a meeting for the best where it is.
+    #[inline(always)]
+    fn take(&mut self, block: &TriangleBlock, lane: usize, meeting: Meeting) {
         let triangle = number(block.triangles[lane]);
         let wins_tie = || meeting.t == self.t_max && self.best.is_none_or(|(other, _)| triangle < other);
         if self.t_min < meeting.t && (meeting.t < self.t_max || wins_tie()) {
@@ -60,13 +72,16 @@ impl<'a> Search<'a> {
     }
 
     /// Decides about those that wait and are not surely beyond the limit.
-    #[inline]
+    #[inline(always)]
     fn settle(&mut self, limit: f32) {
         for place in 0..std::mem::take(&mut self.count) {
             let Waiting { low, block, lane } = self.waiting[place];
             if low <= limit {
                 let blocks = self.blocks;
-                self.decide(&blocks[block as usize], lane as usize);
+                let (block, lane) = (&blocks[block as usize], lane as usize);
+                if let Some(meeting) = self.space.meet_surely(|corner, axis| block.coordinate(lane, corner, axis)) {
+                    self.take(block, lane, meeting);
+                }
             }
         }
     }
@@ -123,7 +138,15 @@ impl<'a> Search<'a> {
 
     /// The closest hit, after all leaves have been looked at.
     #[inline(always)]
-    pub(super) fn finish(mut self, limit: f32) -> Option<MeshHit> {
+    pub(super) fn finish(&mut self, limit: f32) -> Option<MeshHit> {
+        // As with most rays that hit: what is met need not be written down to be compared with another.
+        if self.count == 1 && self.best.is_none() {
+            let Waiting { block, lane, .. } = self.waiting[0];
+            let (block, lane) = (&self.blocks[block as usize], lane as usize);
+            let meeting = self.space.meet_surely(|corner, axis| block.coordinate(lane, corner, axis))?;
+            let is_in_range = self.t_min < meeting.t && meeting.t <= self.t_max;
+            return is_in_range.then(|| MeshHit::new(number(block.triangles[lane & (WIDTH - 1)]), meeting));
+        }
         self.settle(limit);
         self.best.map(|(triangle, meeting)| MeshHit::new(triangle, meeting))
     }
@@ -132,15 +155,18 @@ impl<'a> Search<'a> {
 struct Closest<'a> {
     mesh: &'a TriangleMesh,
     probe: &'a Probe,
-    search: Search<'a>,
+    space: &'a RaySpace,
+    t_min: f64,
+    t_max: f64,
 }
 
 impl Kernel for Closest<'_> {
     type Output = Option<MeshHit>;
     #[inline(always)]
     fn run<F: Eight>(self) -> Option<MeshHit> {
-        let Self { mesh, probe, mut search } = self;
-        let (boxes, triangles) = (BoxRay::<F>::new(probe), BlockRay::<F>::new(probe, search.space));
+        let Self { mesh, probe, space, t_min, t_max } = self;
+        let mut search = Search::new(&mesh.blocks, space, t_min, t_max);
+        let (boxes, triangles) = (BoxRay::<F>::new(probe), BlockRay::<F>::new(probe, &search.space));
         let limit = mesh.tree.nearest(&boxes, probe.limit(search.t_max), |leaf, limit| {
             search.leaf(&triangles, probe, leaf, limit);
         });
@@ -152,11 +178,11 @@ impl Kernel for Closest<'_> {
 #[inline]
 pub(super) fn closest(mesh: &TriangleMesh, ray: &Ray, t_min: f64, t_max: f64) -> Option<MeshHit> {
     let space = &RaySpace::new(ray)?;
-    let mut search = Search::new(&mesh.blocks, space, t_min, t_max);
     match mesh.tree.approach(ray, t_min, t_max) {
         Approach::Missed => None,
-        Approach::Plain(probe) => dispatch(mesh.set, Closest { mesh, probe: &probe, search }),
+        Approach::Plain(probe) => dispatch(mesh.set, Closest { mesh, probe: &probe, space, t_min, t_max }),
         Approach::Strange(slabs) => {
+            let mut search = Search::new(&mesh.blocks, space, t_min, t_max);
             // It never breaks, so there is nothing to know from its end.
             let _ = mesh.tree.each_strange(&slabs, t_min, t_max, &mut |leaf| {
                 let block = &mesh.blocks[leaf as usize];

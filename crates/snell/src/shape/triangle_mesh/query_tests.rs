@@ -272,3 +272,51 @@ fn triangles_of_several_leaves_are_met_once() {
     let twice = TriangleMesh { tree, blocks, ..mesh };
     check(&twice, 2000, 1.0, &mut random);
 }
+
+/// Rays in flight find what rays by themselves do, by every instruction set: more rays than are in flight, some of which miss
+/// everything, are broken, or are odd.
+#[test]
+fn rays_in_flight_find_the_same() {
+    let mut random = Random(11);
+    for kind in KINDS {
+        for (count, scale) in [(3, 1.0), (200, 1.0), (200, 1e6), (40, 1e-20)] {
+            let mesh = mesh_of(kind, count, scale, Vector3::ZERO, &mut random);
+            let mut rays: Vec<Ray> =
+                (0..100).map(|_| Ray::new(Point3::ORIGIN + random.vector() * (2.0 * scale), random.vector())).collect();
+            rays[7].direction = Vector3::ZERO;
+            rays[8].origin = Point3::new(f64::NAN, 0.0, 0.0);
+            rays[9].direction = Vector3::new(0.0, -0.0, 1e-310);
+            let t_max: Vec<f64> =
+                (0..rays.len()).map(|i| if i % 3 == 0 { scale * random.number() } else { f64::INFINITY }).collect();
+            for t_min in [0.0, -0.5 * scale, f64::NEG_INFINITY] {
+                let expected: Vec<Option<MeshHit>> =
+                    rays.iter().zip(&t_max).map(|(ray, t_max)| mesh.intersect(ray, t_min, *t_max)).collect();
+                for set in InstructionSet::available() {
+                    let mesh = mesh.clone().with_instructions(set);
+                    let mut hits = vec![Some(MeshHit { t: 1.0, triangle: 0, barycentric: [0.0; 3], front: true }); 100];
+                    super::many::in_flight(&mesh, &rays, t_min, &t_max, &mut hits);
+                    assert_eq!(hits, expected, "{kind:?} {set:?}");
+                    hits.fill(None);
+                    mesh.intersect_many(&rays, t_min, &t_max, &mut hits);
+                    assert_eq!(hits, expected, "{kind:?} {set:?}");
+                }
+            }
+        }
+    }
+}
+
+/// The twin: rays that are given to the wrong places are told from those that are not.
+#[test]
+fn hits_in_other_places_are_told() {
+    let mut random = Random(12);
+    let mesh = mesh_of(Kind::Soup, 200, 1.0, Vector3::ZERO, &mut random);
+    let rays: Vec<Ray> = (0..64).map(|_| Ray::new(random.point(), random.vector())).collect();
+    let t_max = [f64::INFINITY; 64];
+    let (mut hits, mut turned) = ([None; 64], [None; 64]);
+    super::many::in_flight(&mesh, &rays, 0.0, &t_max, &mut hits);
+    let rays_turned: Vec<Ray> = rays.iter().cycle().skip(1).take(64).copied().collect();
+    super::many::in_flight(&mesh, &rays_turned, 0.0, &t_max, &mut turned);
+    assert_ne!(hits, turned);
+    turned.rotate_right(1);
+    assert_eq!(hits, turned);
+}

@@ -16,8 +16,10 @@
 //! two sheared coordinates neither overflow nor fall below about 1e-290.
 
 use snell_math::{Point3, Ray};
+use wide::f64x4;
 
 /// A ray with the shear that takes it to the third axis.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct RaySpace {
     origin: Point3,
     /// Which axes of space become the first, second and third; the third is the one the ray is longest on.
@@ -45,10 +47,13 @@ impl RaySpace {
         if d.z().abs() > d[third].abs() {
             third = 2;
         }
-        if !(ray.origin.is_finite() && d.is_finite() && d[third].is_normal()) {
+        // Zero times a number is zero, times anything else it is NaN.
+        let (o, zero) = (ray.origin, 0.0);
+        let zeros = (o.x() * zero + o.y() * zero + o.z() * zero) + (d.x() * zero + d.y() * zero + d.z() * zero);
+        if zeros != 0.0 || zeros.is_nan() || !d[third].is_normal() {
             return None;
         }
-        let (first, second) = ((third + 1) % 3, (third + 2) % 3);
+        let (first, second) = [(1, 2), (2, 0), (0, 1)][third];
         let inverse = 1.0 / d[third];
         Some(Self {
             origin: ray.origin,
@@ -64,16 +69,19 @@ impl RaySpace {
     }
 
     /// A corner in the space of the ray: two coordinates across it and one, not scaled, along it.
-    #[inline]
+    #[inline(always)]
     fn shear(&self, corner: [f32; 3]) -> [f64; 3] {
-        let [x, y, z] = self.axes.map(|axis| f64::from(corner[axis]) - self.origin[axis]);
+        let [first, second, third] = self.axes;
+        let x = f64::from(corner[first]) - self.origin[first];
+        let y = f64::from(corner[second]) - self.origin[second];
+        let z = f64::from(corner[third]) - self.origin[third];
         [x - self.shear[0] * z, y - self.shear[1] * z, z]
     }
 
     /// Where the line goes through a triangle. A line in the triangle's plane does not.
     #[inline]
     pub(super) fn meet(&self, corners: [[f32; 3]; 3]) -> Option<Meeting> {
-        let [p, q, r] = &corners.map(|corner| self.shear(corner));
+        let [p, q, r] = &[self.shear(corners[0]), self.shear(corners[1]), self.shear(corners[2])];
         let (mut a, mut b, mut c) = (edge(q, r), edge(r, p), edge(p, q));
         if (a < 0.0 || b < 0.0 || c < 0.0) && (a > 0.0 || b > 0.0 || c > 0.0) {
             return None;
@@ -85,9 +93,26 @@ impl RaySpace {
                 return None;
             }
         }
-        // Met. The edge functions are the weights of the opposite corners, up to scale. Those of a long and thin triangle
-        // lose most of their digits to the difference of products, and the point would slide along the triangle.
-        let (a, b, c) = (exact_edge(q, r), exact_edge(r, p), exact_edge(p, q));
+        self.met(p, q, r)
+    }
+
+    /// As [`RaySpace::meet`], for a triangle of which it is known that the line goes through it. `corners` gives the
+    /// coordinate of a corner on an axis.
+    #[inline(always)]
+    pub(super) fn meet_surely(&self, corners: impl Fn(usize, usize) -> f32) -> Option<Meeting> {
+        let [p, q, r] = &[0, 1, 2].map(|corner| {
+            let [x, y, z] = [0, 1, 2].map(|k| f64::from(corners(corner, self.axes[k])) - self.origin[self.axes[k]]);
+            [x - self.shear[0] * z, y - self.shear[1] * z, z]
+        });
+        self.met(p, q, r)
+    }
+
+    /// Where the line goes through a triangle that it goes through.
+    #[inline(always)]
+    fn met(&self, p: &[f64; 3], q: &[f64; 3], r: &[f64; 3]) -> Option<Meeting> {
+        // The edge functions are the weights of the opposite corners, up to scale. Those of a long and thin triangle lose most
+        // of their digits to the difference of products, and the point would slide along the triangle.
+        let [a, b, c] = exact_edges(p, q, r);
         let area = a + b + c;
         if area == 0.0 || area.is_nan() {
             return None;
@@ -121,8 +146,44 @@ fn near_edge(from: &[f64; 3], to: &[f64; 3]) -> f64 {
 /// `from` × `to` with the exact sign and at most the last two bits wrong.
 #[inline]
 fn exact_edge(from: &[f64; 3], to: &[f64; 3]) -> f64 {
-    let (left, left_error) = exact_product(from[0], to[1]);
-    let (right, right_error) = exact_product(from[1], to[0]);
+    exact_cross(from[0], from[1], to[0], to[1])
+}
+
+/// [`exact_edge`] for the three edges that are opposite to the corners, side by side.
+#[inline(always)]
+fn exact_edges(p: &[f64; 3], q: &[f64; 3], r: &[f64; 3]) -> [f64; 3] {
+    let row = |a: f64, b: f64, c: f64| f64x4::new([a, b, c, c]);
+    let (from_x, from_y) = (row(q[0], r[0], p[0]), row(q[1], r[1], p[1]));
+    let (to_x, to_y) = (row(r[0], p[0], q[0]), row(r[1], p[1], q[1]));
+    let [a, b, c, _] = exact_cross(from_x, from_y, to_x, to_y).to_array();
+    [a, b, c]
+}
+
+/// One number, or several side by side: the operations are the same, and so are the bits.
+trait Number:
+    Copy
+    + std::ops::Add<Output = Self>
+    + std::ops::Sub<Output = Self>
+    + std::ops::Mul<Output = Self>
+    + std::ops::Neg<Output = Self>
+{
+    /// 2²⁷ + 1.
+    const SPLITTER: Self;
+}
+
+impl Number for f64 {
+    const SPLITTER: Self = ((1_u64 << 27) + 1) as f64;
+}
+
+impl Number for f64x4 {
+    const SPLITTER: Self = f64x4::new([f64::SPLITTER; 4]);
+}
+
+/// (`from_x`, `from_y`) × (`to_x`, `to_y`), see [`exact_edge`].
+#[inline(always)]
+fn exact_cross<N: Number>(from_x: N, from_y: N, to_x: N, to_y: N) -> N {
+    let (left, left_error) = exact_product(from_x, to_y);
+    let (right, right_error) = exact_product(from_y, to_x);
     // Where the products do not nearly cancel, the first term decides. Where they do, their difference has no error
     // (Sterbenz), that of their errors is a sum of two terms, and what does not fit into `high` is less than its last
     // place or the last place of the two terms that cancel.
@@ -133,19 +194,24 @@ fn exact_edge(from: &[f64; 3], to: &[f64; 3]) -> f64 {
 }
 
 /// a · b = first + second (Dekker; without a fused operation, which not every machine has).
-fn exact_product(a: f64, b: f64) -> (f64, f64) {
-    let split = |x: f64| {
-        let scaled = ((1_u64 << 27) + 1) as f64 * x;
-        let high = scaled - (scaled - x);
-        (high, x - high)
-    };
+#[inline(always)]
+fn exact_product<N: Number>(a: N, b: N) -> (N, N) {
     let product = a * b;
     let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
     (product, a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low))
 }
 
+/// A number of half the digits, and the rest.
+#[inline(always)]
+fn split<N: Number>(x: N) -> (N, N) {
+    let scaled = N::SPLITTER * x;
+    let high = scaled - (scaled - x);
+    (high, x - high)
+}
+
 /// a + b = first + second (Knuth).
-fn exact_sum(a: f64, b: f64) -> (f64, f64) {
+#[inline(always)]
+fn exact_sum<N: Number>(a: N, b: N) -> (N, N) {
     let sum = a + b;
     let b_part = sum - a;
     (sum, (a - (sum - b_part)) + (b - b_part))

@@ -1,0 +1,140 @@
+//! Many rays and a mesh: sixteen in flight where the mesh is larger than the caches, one by one else.
+//!
+//! In flight, each ray does a step, one node or one leaf, and asks for the memory that its next step needs; then the next ray has
+//! its turn. The steps are those of a ray by itself, in the same order, so the hits are the same.
+
+use snell_math::Ray;
+
+use super::blocks::{BlockLine, BlockRay};
+use super::queries::Search;
+use super::watertight::RaySpace;
+use super::{MeshHit, TriangleMesh};
+use crate::accel::wide::{Approach, BoxLine, BoxRay, Eight, Kernel, Path, Probe, dispatch};
+
+/// How many rays are in flight: enough to wait for memory together, few enough for the nearest cache to hold what is known of them.
+const IN_FLIGHT: usize = 16;
+
+/// From how many bytes of nodes and blocks on memory is worth waiting for together. Measured with one thread on a processor with
+/// 1 MiB of second-level and 32 MiB of third-level cache.
+const LARGE: usize = 24 << 20;
+
+/// A ray in flight.
+struct Flight<'a> {
+    /// Its place among the rays.
+    place: usize,
+    limit: f32,
+    boxes: BoxLine,
+    triangles: BlockLine,
+    probe: Probe,
+    search: Search<'a>,
+    path: Path,
+}
+
+/// Rays to be traced, and where their hits go.
+struct Many<'a, 'b> {
+    mesh: &'a TriangleMesh,
+    rays: &'b [Ray],
+    t_min: f64,
+    t_max: &'b [f64],
+    hits: &'b mut [Option<MeshHit>],
+    /// The first ray that has not taken off yet.
+    next: usize,
+}
+
+impl<'a> Many<'a, '_> {
+    /// The next ray that has something before it; the others have no hit, or are traced by themselves.
+    #[inline(always)]
+    fn take_off(&mut self) -> Option<(usize, Probe, Search<'a>)> {
+        while let (Some(ray), Some(&t_max)) = (self.rays.get(self.next), self.t_max.get(self.next)) {
+            let place = self.next;
+            self.next += 1;
+            let Some(space) = RaySpace::new(ray) else {
+                self.hits[place] = None;
+                continue;
+            };
+            match self.mesh.tree.approach(ray, self.t_min, t_max) {
+                Approach::Missed => self.hits[place] = None,
+                Approach::Strange(_) => self.hits[place] = self.mesh.intersect(ray, self.t_min, t_max),
+                Approach::Plain(probe) => {
+                    return Some((place, probe, Search::new(&self.mesh.blocks, &space, self.t_min, t_max)));
+                }
+            }
+        }
+        None
+    }
+}
+
+impl<'a> Flight<'a> {
+    #[inline(always)]
+    fn new((place, probe, search): (usize, Probe, Search<'a>), t_max: f64) -> Self {
+        let (boxes, triangles) = (BoxLine::new(&probe), BlockLine::new(&probe, search.space()));
+        Self { place, limit: probe.limit(t_max), boxes, triangles, probe, search, path: Path::new() }
+    }
+
+    /// One step; false where it was the last.
+    #[inline(always)]
+    fn step<F: Eight>(&mut self, mesh: &TriangleMesh) -> bool {
+        match self.path.leaf() {
+            None => self.path.descend(&mesh.tree, &BoxRay::<F>::spread(&self.boxes), self.limit),
+            Some(leaf) => {
+                self.search.leaf(&BlockRay::<F>::spread(&self.triangles), &self.probe, leaf, &mut self.limit);
+                self.path.leave(self.limit)
+            }
+        }
+    }
+}
+
+impl Kernel for Many<'_, '_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<F: Eight>(mut self) {
+        let mesh = self.mesh;
+        let mut flights: Vec<Flight> = Vec::with_capacity(IN_FLIGHT);
+        while flights.len() < IN_FLIGHT
+            && let Some(start) = self.take_off()
+        {
+            let t_max = self.t_max[start.0];
+            flights.push(Flight::new(start, t_max));
+        }
+        let mut turn = 0;
+        while let Some(flight) = flights.get_mut(turn) {
+            if flight.step::<F>(mesh) {
+                flight.path.prefetch::<F>(&mesh.tree, |leaf| F::prefetch(&mesh.blocks[leaf as usize]));
+                turn += 1;
+            } else {
+                self.hits[flight.place] = flight.search.finish(flight.limit);
+                match self.take_off() {
+                    Some((place, probe, search)) => {
+                        flight.limit = probe.limit(self.t_max[place]);
+                        flight.boxes = BoxLine::new(&probe);
+                        flight.triangles = BlockLine::new(&probe, search.space());
+                        (flight.place, flight.probe, flight.search) = (place, probe, search);
+                        flight.path.restart();
+                    }
+                    None => {
+                        flights.swap_remove(turn);
+                    }
+                }
+            }
+            if turn >= flights.len() {
+                turn = 0;
+            }
+        }
+    }
+}
+
+/// See [`TriangleMesh::intersect_many`].
+pub(super) fn closest(mesh: &TriangleMesh, rays: &[Ray], t_min: f64, t_max: &[f64], hits: &mut [Option<MeshHit>]) {
+    if mesh.tree.bytes() + size_of_val(mesh.blocks.as_slice()) < LARGE {
+        for ((ray, t_max), hit) in rays.iter().zip(t_max).zip(hits) {
+            *hit = mesh.intersect(ray, t_min, *t_max);
+        }
+        return;
+    }
+    in_flight(mesh, rays, t_min, t_max, hits);
+}
+
+/// The same, in flight whatever the size.
+pub(super) fn in_flight(mesh: &TriangleMesh, rays: &[Ray], t_min: f64, t_max: &[f64], hits: &mut [Option<MeshHit>]) {
+    dispatch(mesh.set, Many { mesh, rays, t_min, t_max, hits, next: 0 });
+}
