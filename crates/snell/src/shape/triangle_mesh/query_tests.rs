@@ -294,7 +294,7 @@ fn rays_in_flight_find_the_same() {
                 for set in InstructionSet::available() {
                     let mesh = mesh.clone().with_instructions(set);
                     let mut hits = vec![Some(MeshHit { t: 1.0, triangle: 0, barycentric: [0.0; 3], front: true }); 100];
-                    super::many::in_flight(&mesh, &rays, t_min, &t_max, &mut hits);
+                    many::in_flight(&mesh, &rays, t_min, &t_max, &mut hits);
                     assert_eq!(hits, expected, "{kind:?} {set:?}");
                     hits.fill(None);
                     mesh.intersect_many(&rays, t_min, &t_max, &mut hits);
@@ -313,9 +313,9 @@ fn hits_in_other_places_are_told() {
     let rays: Vec<Ray> = (0..64).map(|_| Ray::new(random.point(), random.vector())).collect();
     let t_max = [f64::INFINITY; 64];
     let (mut hits, mut turned) = ([None; 64], [None; 64]);
-    super::many::in_flight(&mesh, &rays, 0.0, &t_max, &mut hits);
+    many::in_flight(&mesh, &rays, 0.0, &t_max, &mut hits);
     let rays_turned: Vec<Ray> = rays.iter().cycle().skip(1).take(64).copied().collect();
-    super::many::in_flight(&mesh, &rays_turned, 0.0, &t_max, &mut turned);
+    many::in_flight(&mesh, &rays_turned, 0.0, &t_max, &mut turned);
     assert_ne!(hits, turned);
     turned.rotate_right(1);
     assert_eq!(hits, turned);
