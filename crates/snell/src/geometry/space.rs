@@ -113,13 +113,17 @@ impl Space {
         placements: Vec<Placement>,
         object_spaces: Vec<ObjectSpace>,
     ) -> Result<Self, BuildError> {
-        let bvh = WideBvh::build(&bounds)?;
         let bounded = bounds.len();
+        // All of them, if they all are plain spheres.
         let spheres: Vec<Sphere> = primitives[..bounded]
             .iter()
-            .take(HANDFUL_OF_SPHERES + 1)
             .map_while(|primitive| if let Primitive::Sphere(sphere) = primitive { Some(*sphere) } else { None })
             .collect();
+        let mut bvh = WideBvh::build(&bounds)?;
+        if spheres.len() == bounded {
+            let balls: Vec<(Point3, f64)> = spheres.iter().map(|sphere| (sphere.center, sphere.radius)).collect();
+            bvh = bvh.with_balls(&balls);
+        }
         let are_spheres = spheres.len() == bounded && bounded <= HANDFUL_OF_SPHERES;
         let handful = if are_spheres { SpherePairs::new(&spheres) } else { SpherePairs::default() };
         let first_alone = if !are_spheres && bounded <= HANDFUL { 0 } else { bounded };

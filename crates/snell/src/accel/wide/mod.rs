@@ -12,6 +12,7 @@
 //!
 //! Units and spaces: as [`super::bvh`].
 
+mod balls;
 mod collapse;
 mod memory;
 mod path;

@@ -5,9 +5,10 @@ use std::ops::ControlFlow;
 use snell_math::lanes::InstructionSet;
 use snell_math::{Bounds3, Point3, Ray};
 
+use super::balls::{BallBlock, BallRay};
 use super::shared::{NONE, Visited, number};
 use super::simd::{Eight, Kernel, WIDTH, dispatch};
-use super::{Approach, BoxRay, Probe, WideTree};
+use super::{Approach, BoxRay, Probe, WideTree, take_lane};
 use crate::accel::bvh::{BuildError, Bvh};
 
 /// What a primitive's test finds: something with a ray parameter. `f64` is the ray parameter alone, `(f64, T)` has
@@ -51,6 +52,8 @@ pub struct WideBvh {
     pub(super) tree: WideTree,
     /// Numbers of primitives, see [`WideTree::new`].
     pub(super) leaves: Vec<[u32; WIDTH]>,
+    /// For each leaf its balls, where all primitives are balls; else none.
+    balls: Vec<BallBlock>,
     /// By what boxes are tested.
     set: InstructionSet,
 }
@@ -67,7 +70,19 @@ impl WideBvh {
     /// The same primitives, eight children a node.
     pub fn from_binary(bvh: &Bvh) -> Self {
         let (tree, leaves) = WideTree::new(bvh);
-        Self { tree, leaves, set: InstructionSet::best() }
+        Self { tree, leaves, balls: Vec::new(), set: InstructionSet::best() }
+    }
+
+    /// The same hierarchy, whose primitives are balls of these centres and radii. Queries with rays then leave out most of those
+    /// whose boxes are met and that are not; nothing else changes, where a ball is met within its radius only, up to a few
+    /// roundings of `f64`.
+    ///
+    /// # Panics
+    /// Where there is a primitive without a ball.
+    #[must_use]
+    pub fn with_balls(self, balls: &[(Point3, f64)]) -> Self {
+        let balls = self.leaves.iter().map(|entries| BallBlock::new(entries, balls)).collect();
+        Self { balls, ..self }
     }
 
     /// The same hierarchy, whose boxes are tested by other instructions; nothing else changes.
@@ -88,7 +103,7 @@ impl WideBvh {
 
     /// The memory of nodes and leaves, in bytes.
     pub fn bytes(&self) -> usize {
-        self.tree.bytes() + size_of_val(self.leaves.as_slice())
+        self.tree.bytes() + size_of_val(self.leaves.as_slice()) + size_of_val(self.balls.as_slice())
     }
 
     /// The closest primitive on a ray from its origin to `t_max`, both included, and what its test returned.
@@ -115,16 +130,16 @@ impl WideBvh {
         t_max: f64,
         test: impl FnMut(u32, f64) -> Option<H>,
     ) -> Option<(u32, H)> {
-        let mut search = Search { leaves: &self.leaves, best: None, t_max, test };
+        let mut search = Search { best: None, t_max, test };
         match self.tree.approach(ray, t_min, t_max) {
             Approach::Missed => return None,
             Approach::Plain(probe) => {
-                dispatch(self.set, Closest { tree: &self.tree, probe: &probe, search: &mut search });
+                dispatch(self.set, Closest { bvh: self, probe: &probe, search: &mut search });
             }
             Approach::Strange(slabs) => {
                 // It never breaks, so there is nothing to know from its end; so below.
                 let _ = self.tree.each_strange(&slabs, t_min, t_max, &mut |leaf| {
-                    search.leaf(leaf);
+                    search.leaf(&self.leaves[leaf as usize], ALL);
                     ControlFlow::Continue(())
                 });
             }
@@ -159,14 +174,16 @@ impl WideBvh {
         t_max: f64,
         visit: impl FnMut(u32) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let mut once = Once { leaves: &self.leaves, visited: Visited::default(), visit };
+        let mut once = Once { visited: Visited::default(), visit };
         match self.tree.approach(ray, t_min, t_max) {
             Approach::Missed => ControlFlow::Continue(()),
             Approach::Plain(probe) => {
                 let limit = probe.limit(t_max);
-                dispatch(self.set, Each { tree: &self.tree, probe: &probe, limit, once: &mut once })
+                dispatch(self.set, Each { bvh: self, probe: &probe, limit, once: &mut once })
             }
-            Approach::Strange(slabs) => self.tree.each_strange(&slabs, t_min, t_max, &mut |leaf| once.leaf(leaf)),
+            Approach::Strange(slabs) => {
+                self.tree.each_strange(&slabs, t_min, t_max, &mut |leaf| once.leaf(&self.leaves[leaf as usize], ALL))
+            }
         }
     }
 
@@ -178,27 +195,42 @@ impl WideBvh {
             visit(primitive);
             ControlFlow::Continue(())
         };
-        let mut once = Once { leaves: &self.leaves, visited: Visited::default(), visit };
+        let mut once = Once { visited: Visited::default(), visit };
         let has = |node: &super::WideNode| {
             (0..WIDTH).fold(0, |mask, lane| mask | u32::from(node.bounds(lane).contains_point(p)) << lane)
         };
-        let _ = self.tree.each_where(has, |leaf| once.leaf(leaf));
+        let _ = self.tree.each_where(has, |leaf| once.leaf(&self.leaves[leaf as usize], ALL));
+    }
+}
+
+/// All lanes of a leaf.
+const ALL: u32 = (1 << WIDTH) - 1;
+
+/// The lanes of a leaf that a ray may meet before the limit.
+#[inline(always)]
+fn candidates<F: Eight>(bvh: &WideBvh, ray: &BallRay<F>, leaf: u32, limit: f32) -> u32 {
+    match bvh.balls.get(leaf as usize) {
+        Some(block) => ray.look(block, F::splat(limit)),
+        None => ALL,
     }
 }
 
 /// A query for the closest hit.
-struct Search<'a, H, T> {
-    leaves: &'a [[u32; WIDTH]],
+struct Search<H, T> {
     best: Option<(u32, H)>,
     t_max: f64,
     test: T,
 }
 
-impl<H: Candidate, T: FnMut(u32, f64) -> Option<H>> Search<'_, H, T> {
-    /// Tests the primitives of a leaf.
+impl<H: Candidate, T: FnMut(u32, f64) -> Option<H>> Search<H, T> {
+    /// Tests some primitives of a leaf.
     #[inline(always)]
-    fn leaf(&mut self, leaf: u32) {
-        for &entry in self.leaves[leaf as usize].iter().take_while(|entry| **entry != NONE) {
+    fn leaf(&mut self, entries: &[u32; WIDTH], mut lanes: u32) {
+        while lanes != 0 {
+            let entry = entries[take_lane(&mut lanes)];
+            if entry == NONE {
+                return;
+            }
             let primitive = number(entry);
             let Some(hit) = (self.test)(primitive, self.t_max) else { continue };
             let t = hit.t();
@@ -211,35 +243,39 @@ impl<H: Candidate, T: FnMut(u32, f64) -> Option<H>> Search<'_, H, T> {
     }
 }
 
-struct Closest<'a, 'b, H, T> {
-    tree: &'a WideTree,
+struct Closest<'a, H, T> {
+    bvh: &'a WideBvh,
     probe: &'a Probe,
-    search: &'a mut Search<'b, H, T>,
+    search: &'a mut Search<H, T>,
 }
 
-impl<H: Candidate, T: FnMut(u32, f64) -> Option<H>> Kernel for Closest<'_, '_, H, T> {
+impl<H: Candidate, T: FnMut(u32, f64) -> Option<H>> Kernel for Closest<'_, H, T> {
     type Output = ();
     #[inline(always)]
     fn run<F: Eight>(self) {
-        let Self { tree, probe, search } = self;
-        tree.nearest(&BoxRay::<F>::new(probe), probe.limit(search.t_max), |leaf, limit| {
-            search.leaf(leaf);
+        let Self { bvh, probe, search } = self;
+        let (boxes, balls) = (BoxRay::<F>::new(probe), BallRay::<F>::new(probe));
+        bvh.tree.nearest(&boxes, probe.limit(search.t_max), |leaf, limit| {
+            search.leaf(&bvh.leaves[leaf as usize], candidates(bvh, &balls, leaf, *limit));
             *limit = probe.limit(search.t_max);
         });
     }
 }
 
 /// A query for all primitives, each once.
-struct Once<'a, V> {
-    leaves: &'a [[u32; WIDTH]],
+struct Once<V> {
     visited: Visited,
     visit: V,
 }
 
-impl<V: FnMut(u32) -> ControlFlow<()>> Once<'_, V> {
+impl<V: FnMut(u32) -> ControlFlow<()>> Once<V> {
     #[inline(always)]
-    fn leaf(&mut self, leaf: u32) -> ControlFlow<()> {
-        for &entry in self.leaves[leaf as usize].iter().take_while(|entry| **entry != NONE) {
+    fn leaf(&mut self, entries: &[u32; WIDTH], mut lanes: u32) -> ControlFlow<()> {
+        while lanes != 0 {
+            let entry = entries[take_lane(&mut lanes)];
+            if entry == NONE {
+                break;
+            }
             if self.visited.is_new(entry) {
                 (self.visit)(number(entry))?;
             }
@@ -248,18 +284,19 @@ impl<V: FnMut(u32) -> ControlFlow<()>> Once<'_, V> {
     }
 }
 
-struct Each<'a, 'b, V> {
-    tree: &'a WideTree,
+struct Each<'a, V> {
+    bvh: &'a WideBvh,
     probe: &'a Probe,
     limit: f32,
-    once: &'a mut Once<'b, V>,
+    once: &'a mut Once<V>,
 }
 
-impl<V: FnMut(u32) -> ControlFlow<()>> Kernel for Each<'_, '_, V> {
+impl<V: FnMut(u32) -> ControlFlow<()>> Kernel for Each<'_, V> {
     type Output = ControlFlow<()>;
     #[inline(always)]
     fn run<F: Eight>(self) -> ControlFlow<()> {
-        let Self { tree, probe, limit, once } = self;
-        tree.each(&BoxRay::<F>::new(probe), limit, |leaf| once.leaf(leaf))
+        let Self { bvh, probe, limit, once } = self;
+        let (boxes, balls) = (BoxRay::<F>::new(probe), BallRay::<F>::new(probe));
+        bvh.tree.each(&boxes, limit, |leaf| once.leaf(&bvh.leaves[leaf as usize], candidates(bvh, &balls, leaf, limit)))
     }
 }

@@ -172,6 +172,84 @@ fn agrees_with_brute_force_at_all_scales() {
     }
 }
 
+/// Balls of all sizes, and their boxes.
+fn balls(random: &mut Random, count: usize, scale: f64, far: f64) -> (Vec<(Point3, f64)>, Vec<Bounds3>) {
+    let offset = random.vector() * (far * scale);
+    let ball = |i: usize| {
+        let size = if i.is_multiple_of(5) { halvings(i % 40) } else { 0.2 };
+        (Point3::ORIGIN + offset + random.vector() * scale, size * scale)
+    };
+    let balls: Vec<(Point3, f64)> = (0..count).map(ball).collect();
+    let bounds = balls.iter().map(|(center, radius)| cube(*center, *radius)).collect();
+    (balls, bounds)
+}
+
+/// A ray at a ball: at its middle, its rim, or past it; from near or far.
+fn ray_at(i: usize, (center, radius): (Point3, f64), scale: f64, random: &mut Random) -> Ray {
+    let along = random.vector().normalize();
+    let (tangent, _) = along.orthonormal_basis();
+    let aside = [0.0, 0.999_999, 1.0, 1.000_001, 0.5][i % 5] * radius;
+    let far = [0.0, 1.0, 100.0, 1e6, 1e12][i / 5 % 5] * scale;
+    Ray::new(center + tangent * aside - along * far, along * [1.0, 1e-100, 1e100][i / 25 % 3])
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+    #[test]
+    fn balls_are_not_missed(
+        seed in any::<u64>(),
+        count in 1..60_usize,
+        scale in prop::sample::select(vec![1e-14, 1e-10, 1.0, 1e5, 1e14]),
+        far in prop::sample::select(vec![0.0, 100.0]),
+    ) {
+        let mut random = Random(seed);
+        let (balls, bounds) = balls(&mut random, count, scale, far);
+        let primitives: Vec<Primitive> = balls.iter().map(|(center, radius)| Primitive::Sphere(*center, *radius)).collect();
+        let ways: Vec<WideBvh> = every_way(&bounds).into_iter().map(|bvh| bvh.with_balls(&balls)).collect();
+        for i in 0..200 {
+            let ray = ray_at(i, balls[random.index(count)], scale, &mut random);
+            let t_max = if i % 3 == 0 { scale / ray.direction.length() } else { f64::INFINITY };
+            let hits = || (0..).zip(&primitives).filter_map(|(id, p)| Some((id, p.hit(&ray, t_max)?)));
+            let closest = hits().min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+            for bvh in &ways {
+                let found = bvh.closest(&ray, t_max, |id, t_max| primitives[id as usize].hit(&ray, t_max));
+                prop_assert_eq!(found, closest);
+                let mut visited = Vec::new();
+                bvh.all(&ray, t_max, |id| visited.push(id));
+                prop_assert!(hits().all(|(id, _)| visited.contains(&id)));
+            }
+        }
+    }
+}
+
+/// The twin: with radii a ten thousandth too small they are; and with right ones few are visited in vain.
+#[test]
+fn smaller_balls_are_missed() {
+    let mut random = Random(21);
+    let (balls, bounds) = balls(&mut random, 60, 1.0, 0.0);
+    let smaller: Vec<(Point3, f64)> = balls.iter().map(|(center, radius)| (*center, 0.999 * radius)).collect();
+    let bvh = WideBvh::build(&bounds).expect("finite boxes");
+    let [bad, good] = [smaller, balls.clone()].map(|balls| bvh.clone().with_balls(&balls));
+    let (mut missed, mut hits, mut visited) = (0, 0, 0);
+    for i in 0..1000 {
+        let ray = ray_at(i % 10, balls[i % 60], 1.0, &mut random);
+        let is_met = |id: u32| {
+            let (center, radius) = balls[id as usize];
+            Primitive::Sphere(center, radius).hit(&ray, f64::INFINITY).is_some()
+        };
+        let count = |bvh: &WideBvh| {
+            let mut count = [0, 0];
+            bvh.all(&ray, f64::INFINITY, |id| count[usize::from(is_met(id))] += 1);
+            count
+        };
+        let (bad, good) = (count(&bad), count(&good));
+        missed += good[1] - bad[1];
+        hits += good[1];
+        visited += good[0];
+    }
+    assert!(missed > 50 && visited < hits, "{missed} {visited} {hits}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
     #[test]
