@@ -80,6 +80,11 @@ enum Care {
 }
 
 impl Triangulator {
+    /// For one of so many parts of a file, of which none may use up the steps of another.
+    pub(crate) fn with_share(parts: u64) -> Self {
+        Self { work: BASE_WORK - BASE_WORK / parts.max(1), ..Self::default() }
+    }
+
     /// Appends the triangles of one polygon as [`triangulate`] gives them.
     ///
     /// # Errors

@@ -53,6 +53,12 @@ impl<'a> Report<'a> {
         self.failed
     }
 
+    /// True where anything was told.
+    #[cfg(test)]
+    pub fn has_told(&self) -> bool {
+        !self.kinds.is_empty()
+    }
+
     /// Notes that a file that this one names has an error: this one gives nothing either.
     pub fn fail(&mut self) {
         self.failed = true;

@@ -2,6 +2,8 @@
 
 use std::collections::HashMap;
 
+use foldhash::fast::RandomState;
+
 use super::{Corner, NONE, Parser};
 use crate::diagnostic::Diagnostic;
 use crate::reader::mesh_file::MeshFile;
@@ -68,13 +70,13 @@ struct Builder<'p, 'a, 'm> {
     /// For each position the first triple that used it, and the vertex it became: most positions have no other.
     first: Vec<(u32, u32, u32)>,
     /// All other triples.
-    others: HashMap<Corner, u32>,
+    others: HashMap<Corner, u32, RandomState>,
 }
 
 impl<'p, 'a, 'm> Builder<'p, 'a, 'm> {
     fn new(parser: &'p Parser<'a>, mesh: &'m mut Mesh, any_uv: bool, any_normal: bool) -> Self {
         let first = vec![(NONE, NONE, NONE); parser.positions.len()];
-        Self { parser, mesh, any_uv, any_normal, first, others: HashMap::new() }
+        Self { parser, mesh, any_uv, any_normal, first, others: HashMap::default() }
     }
 
     fn build(mut self) {

@@ -10,8 +10,10 @@
 //! reader and not a library's: `tobj` gives no places for errors and reads numbers line by line through `String`s.
 
 mod assemble;
+mod chunk;
 mod material;
 mod mtl;
+mod parallel;
 
 use std::collections::HashMap;
 
@@ -24,6 +26,11 @@ use crate::diagnostic::{Diagnostic, did_you_mean};
 
 /// No texture coordinate, no normal, no material.
 const NONE: u32 = u32::MAX;
+
+/// Files of fewer bytes are read line by line at once; …
+const LEAST_PARALLEL: usize = 1 << 16;
+/// … others first in stretches of about so many.
+const STRETCH: usize = 1 << 20;
 
 /// Numbers of a corner's position, texture coordinate and normal, from 0.
 type Corner = [u32; 3];
@@ -38,6 +45,23 @@ pub(super) fn read(report: &mut Report<'_>, assets: &dyn Assets) -> Option<MeshF
             return None;
         }
     };
+    let is_large = report.bytes.len() >= LEAST_PARALLEL;
+    let plain = if is_large { parallel::read(report.bytes, start, STRETCH) } else { None };
+    let parser = match plain {
+        Some(parser) => parser,
+        None => line_by_line(report, start)?,
+    };
+    if report.failed() {
+        return None;
+    }
+    let materials = material::read(&parser, report, assets);
+    let mut file = assemble::assemble(parser, report)?;
+    (file.materials, file.images) = materials;
+    Some(file)
+}
+
+/// Reads one line after the other and tells all that is wrong; `None` where that takes too long.
+fn line_by_line<'a>(report: &mut Report<'a>, start: usize) -> Option<Parser<'a>> {
     let mut parser = Parser::default();
     let mut lines = Lines::new(report.bytes, start, true);
     while let Some(line) = lines.next_line() {
@@ -46,13 +70,7 @@ pub(super) fn read(report: &mut Report<'_>, assets: &dyn Assets) -> Option<MeshF
             return None;
         }
     }
-    if report.failed() {
-        return None;
-    }
-    let materials = material::read(&parser, report, assets);
-    let mut file = assemble::assemble(parser, report)?;
-    (file.materials, file.images) = materials;
-    Some(file)
+    Some(parser)
 }
 
 /// What the lines so far gave.
@@ -186,6 +204,11 @@ impl<'a> Parser<'a> {
             }
             self.triangles.extend(self.cut.iter().map(|t| t.map(|i| self.face[i as usize])));
         }
+        self.set_material(before);
+    }
+
+    /// Gives the triangles from one on the material of the last `usemtl`.
+    fn set_material(&mut self, first: usize) {
         if let Some(name) = self.current {
             let number = *self.current_number.get_or_insert_with(|| {
                 *self.material_numbers.entry(name.text).or_insert_with(|| {
@@ -193,7 +216,7 @@ impl<'a> Parser<'a> {
                     self.material_names.len() as u32 - 1
                 })
             });
-            self.triangle_materials.resize(before, NONE);
+            self.triangle_materials.resize(first, NONE);
             self.triangle_materials.resize(self.triangles.len(), number);
         }
     }

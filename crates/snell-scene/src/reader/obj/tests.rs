@@ -1,5 +1,7 @@
 //! What OBJ and MTL files mean, in small ones written here.
 
+mod parallel;
+
 use snell_math::Rgb;
 
 use crate::assets::MemoryAssets;
