@@ -151,10 +151,21 @@ fn read_vertices<S: Source>(
     mesh.normals.reserve(if has_normals { count } else { 0 });
     mesh.uvs.reserve(if has_uvs { count } else { 0 });
     mesh.colors.reserve(if has_colors { count } else { 0 });
+    let only_positions = element.properties.len() == 3
+        && roles.iter().zip(0..).all(|(&(kind, role), axis)| {
+            kind == Kind::Scalar(Scalar::F32) && matches!(role, Role::Position(i) if i == axis)
+        });
     // sRGB decoding takes a power; bytes have few values.
     let bytes: Vec<f32> = (0..=255).map(|b| linear(f64::from(b), Scalar::U8)).collect();
 
-    for row in 0..element.count {
+    let mut row = 0;
+    while row < element.count {
+        if only_positions {
+            row += source.plain_positions(element.count - row, &mut mesh.positions);
+            if row == element.count {
+                break;
+            }
+        }
         let (mut position, mut normal, mut uv, mut color) = ([0.0f32; 3], [0.0f32; 3], [0.0f32; 2], [0.0f32; 3]);
         let at_row = |fail| (fail, row);
         source.begin_row().map_err(at_row)?;
@@ -191,6 +202,7 @@ fn read_vertices<S: Source>(
         if has_colors {
             mesh.colors.push(color);
         }
+        row += 1;
     }
     Ok(())
 }
@@ -210,7 +222,20 @@ fn read_faces<S: Source>(
         data.sizes.reserve(faces);
         data.corners.reserve(3 * faces);
     }
-    for row in 0..element.count {
+    let only_list = match element.properties.as_slice() {
+        [Property { kind: Kind::List { count, item }, .. }] if !strips => Some((*count, *item)),
+        _ => None,
+    };
+    let mut row = 0;
+    while row < element.count {
+        if let Some(list) = only_list {
+            let read = source.plain_triangles(list, element.count - row, vertices, &mut data.corners);
+            data.sizes.resize(data.sizes.len() + read as usize, 3);
+            row += read;
+            if row == element.count {
+                break;
+            }
+        }
         let at_row = |fail| (fail, row);
         source.begin_row().map_err(at_row)?;
         for (place, property) in element.properties.iter().enumerate() {
@@ -261,6 +286,7 @@ fn read_faces<S: Source>(
             }
         }
         end_row(source, report);
+        row += 1;
     }
     Ok(())
 }

@@ -35,7 +35,7 @@ pub(super) fn read(report: &mut Report<'_>) -> Option<MeshFile> {
 }
 
 /// What the body gave, faces not yet cut into triangles.
-#[derive(Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 struct Data {
     mesh: Mesh,
     /// The corners of all faces, one face after the other, and how many each has.
@@ -90,5 +90,7 @@ fn linear(value: f64, scalar: header::Scalar) -> f32 {
     srgb_to_linear((value / encoded_by).clamp(0.0, 1.0) as f32)
 }
 
+#[cfg(test)]
+mod plain_tests;
 #[cfg(test)]
 mod tests;

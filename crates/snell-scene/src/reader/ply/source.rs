@@ -30,6 +30,17 @@ pub(super) trait Source {
     /// The place of the last number, or of the row where it has none.
     fn place(&self) -> Range<usize>;
 
+    /// Reads rows of three finite `float` numbers and no more, as long as they are such and at most `rows`; says how many. The
+    /// row after them is read by [`Source::number`], which tells what is wrong with it. Only where that is faster.
+    fn plain_positions(&mut self, _rows: u64, _positions: &mut Vec<[f32; 3]>) -> u64 {
+        0
+    }
+
+    /// As [`Source::plain_positions`], rows of a list of three corners that are there and no more.
+    fn plain_triangles(&mut self, _list: (Scalar, Scalar), _rows: u64, _vertices: u64, _corners: &mut Vec<u32>) -> u64 {
+        0
+    }
+
     /// Skips all rows of an element.
     fn skip(&mut self, element: &Element) -> Result<(), Fail>;
 }
@@ -116,6 +127,11 @@ impl<'a, const BIG: bool> Binary<'a, BIG> {
         Ok(taken)
     }
 
+    #[inline]
+    fn word(bytes: [u8; 4]) -> u32 {
+        if BIG { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) }
+    }
+
     fn advance(&mut self, by: u64) -> Result<(), Fail> {
         if by > self.remaining() {
             return Err(Fail::Ends(self.bytes.len()));
@@ -162,6 +178,48 @@ impl<const BIG: bool> Source for Binary<'_, BIG> {
 
     fn end_row(&mut self) -> Option<Range<usize>> {
         None
+    }
+
+    fn plain_positions(&mut self, rows: u64, positions: &mut Vec<[f32; 3]>) -> u64 {
+        let (records, _) = self.bytes[self.position..].as_chunks::<12>();
+        let before = positions.len();
+        let records = &records[..rows.min(records.len() as u64) as usize];
+        let decoded = records.iter().map(|record| {
+            let (numbers, _) = record.as_chunks::<4>();
+            [0, 1, 2].map(|axis| f32::from_bits(Self::word(numbers[axis])))
+        });
+        positions.extend(decoded.take_while(|position| position.iter().all(|c| c.is_finite())));
+        let read = positions.len() - before;
+        self.position += 12 * read;
+        read as u64
+    }
+
+    fn plain_triangles(
+        &mut self,
+        (count, item): (Scalar, Scalar),
+        rows: u64,
+        vertices: u64,
+        corners: &mut Vec<u32>,
+    ) -> u64 {
+        // What would be negative is too large as well.
+        let limit = match (count, item) {
+            (Scalar::U8 | Scalar::I8, Scalar::U32) => vertices,
+            (Scalar::U8 | Scalar::I8, Scalar::I32) => vertices.min(1 << 31),
+            _ => return 0,
+        };
+        let (records, _) = self.bytes[self.position..].as_chunks::<13>();
+        let mut read = 0;
+        for &[size, ref numbers @ ..] in &records[..rows.min(records.len() as u64) as usize] {
+            let (numbers, _) = numbers.as_chunks::<4>();
+            let triangle = [0, 1, 2].map(|corner| Self::word(numbers[corner]));
+            if size != 3 || triangle.iter().any(|&corner| u64::from(corner) >= limit) {
+                break;
+            }
+            corners.extend(triangle);
+            read += 1;
+        }
+        self.position += 13 * read;
+        read as u64
     }
 
     fn place(&self) -> Range<usize> {
