@@ -7,6 +7,7 @@
 //! The camera is as near as the whole mesh allows in a square picture, with a margin; its field of view is vertical, so that
 //! wider pictures only show more at the sides.
 
+use rayon::prelude::*;
 use snell_math::{Bounds3, Point3, Rgb, Transform, Vector3, portable};
 
 use super::normals::{mesh_bounds, smooth_normals};
@@ -85,12 +86,15 @@ fn frame(mesh: &Mesh, world_from_mesh: &Transform, bounds: &Bounds3, size: f64) 
     let fov = portable::radians(FIELD_OF_VIEW);
     let slope = portable::tan(0.5 * fov) * FILL;
     // A point at (x, y) across and z towards the eye is inside where max(|x|, |y|) is at most slope · (distance − z).
-    let distance = mesh.triangles.iter().flatten().fold(0.0f64, |distance, &vertex| {
+    let needed = |distance: f64, &vertex: &u32| {
         let point = world_from_mesh.point(Point3::from(mesh.positions[vertex as usize].map(f64::from)));
         let from_center = point - center;
         let across = from_center.dot(right).abs().max(from_center.dot(up).abs());
         distance.max(across / slope + from_center.dot(backward))
-    });
+    };
+    // The largest of all, in whichever order they are looked at.
+    let corners = mesh.triangles.as_flattened().par_chunks(1 << 16);
+    let distance = corners.map(|corners| corners.iter().fold(0.0, needed)).reduce(|| 0.0, f64::max);
     // Never within the mesh, and in front of a mesh without any extent.
     let distance = distance.max(size);
     Camera { eye: center + backward * distance, gaze: -backward, up: Vector3::Y, frame: Frame::VerticalFov(fov) }

@@ -9,6 +9,8 @@
 
 use std::collections::HashMap;
 
+use foldhash::fast::RandomState;
+
 use super::mesh_file::MeshFile;
 use super::normals::position_key;
 use super::report::{Report, quoted};
@@ -56,7 +58,7 @@ fn is_binary(bytes: &[u8]) -> bool {
 #[derive(Default)]
 struct Weld {
     mesh: Mesh,
-    vertices: HashMap<[u32; 3], u32>,
+    vertices: HashMap<[u32; 3], u32, RandomState>,
 }
 
 impl Weld {
