@@ -4,7 +4,7 @@
 //! every component would take a tenth of a small picture's time, so [`Encoder`] interpolates a table of the curve, and
 //! asks the reference only where the interpolated value lies so near to the boundary of two codes that its error could
 //! decide. For 8 bit codes, of which there are few, there is a table with the very numbers at which the reference's codes
-//! change, see [`bytes`]. Hence its codes are those of the reference for every `f32`; the tests hold it to that.
+//! change, see `transfer/bytes.rs`. Hence its codes are those of the reference for every `f32`; the tests hold it to that.
 
 mod bytes;
 

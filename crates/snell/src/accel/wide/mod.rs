@@ -6,9 +6,9 @@
 //! hit takes them as they come, and the largest is the likeliest to stop it (Nah and Manocha, "SATO: Surface Area Traversal
 //! Order for Shadow Ray Tracing", CGF 33(6), 2014).
 //!
-//! [`WideTree`] knows boxes and the places of leaves in a list that someone else keeps; [`WideBvh`] keeps lists of
+//! `WideTree` knows boxes and the places of leaves in a list that someone else keeps; [`WideBvh`] keeps lists of
 //! primitives known by number. Boxes are `f32`, rounded outward. Box tests in `f32` are a filter that never loses a hit (see
-//! [`probe`]); what a hit is remains the caller's to say, in `f64`.
+//! `probe.rs`); what a hit is remains the caller's to say, in `f64`.
 //!
 //! Units and spaces: as [`super::bvh`].
 
