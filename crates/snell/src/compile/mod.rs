@@ -2,6 +2,7 @@
 
 mod count;
 mod images;
+mod names;
 mod objects;
 #[cfg(test)]
 mod tests;
@@ -10,6 +11,8 @@ use snell_math::dispersion::fraunhofer::SODIUM_D;
 use snell_math::{Point3, Ray, Rgb};
 use snell_scene::scene::{self, Scene};
 use snell_scene::{Diagnostic, Severity};
+
+pub use names::ObjectNames;
 
 use crate::geometry::{Geometry, Hit, QueryScratch};
 use crate::interaction::SurfaceInteraction;
@@ -34,7 +37,7 @@ pub struct CompiledScene {
     /// The camera, still without a picture's size.
     pub camera: scene::Camera,
     /// The names of the objects, by their number; those without one are named after what they are.
-    pub object_names: Vec<String>,
+    pub object_names: ObjectNames,
     /// What is odd about the scene but renders all the same.
     pub warnings: Vec<Diagnostic>,
     /// What a ray sees that hits nothing.

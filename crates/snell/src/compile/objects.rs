@@ -1,18 +1,22 @@
 //! Flattening the objects of a scene into primitives, and building what they are found by.
 
+use std::borrow::Cow;
+use std::collections::BTreeSet;
+
 use rayon::prelude::*;
 use snell_math::{Bounds3, Transform};
 use snell_scene::scene::{self, Object, ObjectKind, Scene};
-use snell_scene::{Diagnostic, Id, Severity};
+use snell_scene::{Diagnostic, Id};
 
-use super::count::{COPIED_PROTOTYPE, refuse_too_many};
+use super::count::Plan;
+use super::names::ObjectNames;
 use crate::accel::BuildError;
 use crate::csg::{CsgNode, CsgSolid};
 use crate::geometry::{Attributes, Geometry, NONE, ObjectSpace, Placement, Primitive, Space};
 use crate::material::Material;
 use crate::shape::Shape;
 use crate::shape::triangle_mesh::TriangleMesh;
-use crate::texture::Textures;
+use crate::texture::{Spaces, Textures};
 
 /// Compiles all objects of a scene, with their names. `materials` is the scene's list with the one for objects without
 /// material at its end. `None` where there is an error among the diagnostics.
@@ -21,11 +25,8 @@ pub fn compile(
     materials: &[Material],
     textures: &Textures,
     diagnostics: &mut Vec<Diagnostic>,
-) -> Option<(Geometry, Vec<String>)> {
-    if let Some(error) = refuse_too_many(scene) {
-        diagnostics.push(error);
-        return None;
-    }
+) -> Option<(Geometry, ObjectNames)> {
+    let plan = Plan::new(scene).map_err(|error| diagnostics.push(*error)).ok()?;
     let descriptions: Vec<&scene::Mesh> = scene.meshes.iter().collect();
     let compiled: Vec<Result<TriangleMesh, _>> = descriptions.par_iter().map(|mesh| TriangleMesh::new(mesh)).collect();
     let mut meshes = Vec::with_capacity(compiled.len());
@@ -41,25 +42,39 @@ pub fn compile(
         return None;
     }
     let transparent: Vec<bool> = materials.iter().map(|material| material.body.is_some()).collect();
+    let spaces: Vec<Spaces> = materials.iter().map(|material| material.spaces(textures)).collect();
     let mut compiler = Compiler {
         scene,
         meshes: &meshes,
         transparent: &transparent,
+        spaces: &spaces,
         prototypes: Vec::new(),
+        places: Vec::with_capacity(scene.prototypes.len()),
         solids: Vec::new(),
-        names: Vec::new(),
+        names: ObjectNames::default(),
         next_object: 0,
+        warned: BTreeSet::new(),
+        failed: false,
         diagnostics,
     };
-    for prototype in scene.prototypes.iter() {
-        let space = compiler.space(&prototype.objects)?;
-        compiler.prototypes.push(space);
+    for (id, prototype) in scene.prototypes.enumerate() {
+        if plan.is_shared(id) {
+            let space = compiler.space(&prototype.objects, id.index(), plan.size(id))?;
+            compiler.places.push(compiler.prototypes.len() as u32);
+            compiler.prototypes.push(space);
+        } else {
+            // Told once and not with every copy, nor only where there is one.
+            prototype.objects.iter().for_each(|object| compiler.check_solids(object));
+            compiler.places.push(NONE);
+        }
     }
-    let world = compiler.space(&scene.objects)?;
+    if compiler.failed {
+        return None;
+    }
+    let world = compiler.space(&scene.objects, scene.prototypes.len(), plan.in_world)?;
     let Compiler { prototypes, solids, names, .. } = compiler;
     let mesh_materials =
         scene.meshes.iter().map(|mesh| mesh.materials.iter().map(|id| id.index() as u32).collect()).collect();
-    let spaces = materials.iter().map(|material| material.spaces(textures)).collect();
     let default_material = materials.len() as u32 - 1;
     let geometry =
         Geometry { world, prototypes, meshes, mesh_materials, solids, transparent, spaces, default_material };
@@ -69,18 +84,30 @@ pub fn compile(
 struct Compiler<'a> {
     scene: &'a Scene,
     meshes: &'a [TriangleMesh],
+    /// For each material, whether light goes through it.
     transparent: &'a [bool],
+    /// For each material, which coordinates of a hit it looks at.
+    spaces: &'a [Spaces],
+    /// Those that are shared.
     prototypes: Vec<Space>,
+    /// For each prototype of the scene its place among the shared ones, or [`NONE`].
+    places: Vec<u32>,
     solids: Vec<CsgSolid>,
-    names: Vec<String>,
+    names: ObjectNames,
     next_object: u32,
+    /// Objects of which a warning was told: one for all copies. By their places in memory, which do not change meanwhile.
+    warned: BTreeSet<*const Object>,
+    /// There is an error among the diagnostics.
+    failed: bool,
     diagnostics: &'a mut Vec<Diagnostic>,
 }
 
-/// A space in the making.
+/// A space in the making. Attributes come first for those with bounds and then, once they are complete, for the others.
 #[derive(Default)]
 struct Parts {
-    bounded: Vec<(Bounds3, Primitive, Attributes)>,
+    primitives: Vec<Primitive>,
+    attributes: Vec<Attributes>,
+    bounds: Vec<Bounds3>,
     unbounded: Vec<(Primitive, Attributes)>,
     shapes: Vec<Shape>,
     placements: Vec<Placement>,
@@ -92,28 +119,35 @@ struct Parts {
 struct Context {
     space_from_parent: Transform,
     material: u32,
+    /// Prototypes before this one may be placed here; in the world itself all.
+    before: usize,
 }
 
 impl Compiler<'_> {
-    /// Flattens objects into a space of their own; `None` where there is an error among the diagnostics.
-    fn space(&mut self, objects: &[Object]) -> Option<Space> {
-        let mut parts = Parts::default();
-        let context = Context { space_from_parent: Transform::IDENTITY, material: NONE };
+    /// Flattens `count` objects into a space of their own, with prototypes before the one given; `None` where there is an error
+    /// among the diagnostics.
+    fn space(&mut self, objects: &[Object], before: usize, count: usize) -> Option<Space> {
+        let mut parts = Parts::with_capacity(count);
+        let context = Context { space_from_parent: Transform::IDENTITY, material: NONE, before };
         for object in objects {
             self.add(object, context, &mut parts);
         }
-        let is_error = |diagnostic: &Diagnostic| diagnostic.severity == Severity::Error;
-        if self.diagnostics.iter().any(is_error) {
+        if self.failed {
             return None;
         }
         let space = parts.finish();
-        space.map_err(|error| self.diagnostics.push(Diagnostic::error(error.to_string()))).ok()
+        space.map_err(|error| self.fail(Diagnostic::error(error.to_string()))).ok()
+    }
+
+    fn fail(&mut self, error: Diagnostic) {
+        self.failed = true;
+        self.diagnostics.push(error);
     }
 
     fn add(&mut self, object: &Object, context: Context, parts: &mut Parts) {
         let space_from_object = context.space_from_parent * object.parent_from_object;
         let material = object.material.map_or(context.material, |id| id.index() as u32);
-        let inner = Context { space_from_parent: space_from_object, material };
+        let inner = Context { space_from_parent: space_from_object, material, ..context };
         match &object.kind {
             ObjectKind::Group(members) => members.iter().for_each(|member| self.add(member, inner, parts)),
             ObjectKind::Grid(grid) => self.add_grid(grid, inner, parts),
@@ -126,15 +160,18 @@ impl Compiler<'_> {
 
     fn add_shape(&mut self, object: &Object, description: &scene::Shape, context: Context, parts: &mut Parts) {
         let Some(shape) = Shape::new(description) else { return };
-        let Context { space_from_parent: space_from_object, material } = context;
-        let mut attributes = self.attributes(object, description_name(description), material, self.is_opaque(material));
-        let (shape, placement) = match shape.transformed(&space_from_object) {
-            _ if space_from_object.is_identity() => (shape, NONE),
-            Some(moved) => {
+        let Context { space_from_parent: space_from_object, material, .. } = context;
+        let is_opaque = self.is_opaque(material);
+        let mut attributes = self.attributes(object, || description_name(description).into(), material, is_opaque);
+        let (shape, placement) = if space_from_object.is_identity() {
+            (shape, NONE)
+        } else if let Some(moved) = shape.transformed(&space_from_object) {
+            if self.looks_at_object(material) {
                 attributes.object_space = parts.add_object_space(space_from_object, shape);
-                (moved, NONE)
             }
-            None => (shape, parts.add_placement(space_from_object)),
+            (moved, NONE)
+        } else {
+            (shape, parts.add_placement(space_from_object))
         };
         let bounds = shape.bounds();
         let bounds = if placement == NONE { bounds } else { placed_bounds(&space_from_object, &bounds) };
@@ -147,7 +184,7 @@ impl Compiler<'_> {
     }
 
     fn add_mesh(&mut self, object: &Object, mesh: Id<scene::Mesh>, context: Context, parts: &mut Parts) {
-        let Context { space_from_parent: space_from_object, material } = context;
+        let Context { space_from_parent: space_from_object, material, .. } = context;
         let compiled = &self.meshes[mesh.index()];
         let description = &self.scene.meshes[mesh];
         let is_opaque = if material == NONE {
@@ -157,7 +194,7 @@ impl Compiler<'_> {
             self.is_opaque(material)
         };
         let open_edges = compiled.boundary_edges();
-        if !is_opaque && open_edges > 0 {
+        if !is_opaque && open_edges > 0 && self.warned.insert(std::ptr::from_ref(object)) {
             let name = object.name.as_deref().unwrap_or(&description.name);
             let message =
                 format!("the transparent mesh \"{name}\" is not closed: {open_edges} of its edges have one side only");
@@ -174,37 +211,49 @@ impl Compiler<'_> {
             bounds = placed_bounds(&space_from_object, &bounds);
             parts.add_placement(space_from_object)
         };
-        let attributes = self.attributes(object, &description.name, material, is_opaque);
+        let attributes = self.attributes(object, || description.name.clone().into(), material, is_opaque);
         let primitive = Primitive::Mesh { mesh: mesh.index() as u32, placement };
         parts.push(bounds, primitive, attributes);
     }
 
     fn add_solid(&mut self, object: &Object, context: Context, parts: &mut Parts) {
-        let Context { space_from_parent: space_from_object, material } = context;
+        let Context { space_from_parent: space_from_object, material, .. } = context;
         let mut is_opaque = self.is_opaque(material);
-        let mut nodes = Vec::new();
-        let solid = match self.add_nodes(object, Transform::IDENTITY, NONE, &mut nodes, &mut is_opaque) {
-            Some(_) => CsgSolid::new(nodes).map_err(|error| error.to_string()),
-            None => Err("one of its parts is neither a solid nor made of solids".to_owned()),
-        };
-        let solid = match solid {
-            Ok(solid) => solid,
-            Err(reason) => {
-                let error = Diagnostic::error(format!("this solid cannot be made: {reason}"));
-                self.diagnostics.push(error.at_optional(object.span.clone(), "this one"));
-                return;
-            }
-        };
+        let Some(solid) = self.solid(object, &mut is_opaque) else { return };
         let bounds = solid.bounds();
         let (bounds, placement) = if space_from_object.is_identity() {
             (bounds, NONE)
         } else {
             (placed_bounds(&space_from_object, &bounds), parts.add_placement(space_from_object))
         };
-        let attributes = self.attributes(object, "solid", material, is_opaque);
+        let attributes = self.attributes(object, || "solid".into(), material, is_opaque);
         let primitive = Primitive::Solid { solid: self.solids.len() as u32, placement };
         self.solids.push(solid);
         parts.push(bounds, primitive, attributes);
+    }
+
+    /// A solid in its own space; `None` where it cannot be made, which is told. Sets `is_opaque` to false where a part is not.
+    fn solid(&mut self, object: &Object, is_opaque: &mut bool) -> Option<CsgSolid> {
+        let mut nodes = Vec::new();
+        let solid = match self.add_nodes(object, Transform::IDENTITY, NONE, &mut nodes, is_opaque) {
+            Some(_) => CsgSolid::new(nodes).map_err(|error| error.to_string()),
+            None => Err("one of its parts is neither a solid nor made of solids".to_owned()),
+        };
+        let error = |reason| {
+            let error = Diagnostic::error(format!("this solid cannot be made: {reason}"));
+            self.fail(error.at_optional(object.span.clone(), "this one"));
+        };
+        solid.map_err(error).ok()
+    }
+
+    /// Tells of solids in an object that cannot be made.
+    fn check_solids(&mut self, object: &Object) {
+        match &object.kind {
+            ObjectKind::Csg { .. } => _ = self.solid(object, &mut true),
+            ObjectKind::Group(members) => members.iter().for_each(|member| self.check_solids(member)),
+            ObjectKind::Grid(grid) => self.check_solids(&grid.of),
+            ObjectKind::Shape(_) | ObjectKind::Instance(_) => {}
+        }
     }
 
     /// Appends the nodes of a solid or of a part of one, children before their parents, and returns the place of the last.
@@ -248,22 +297,25 @@ impl Compiler<'_> {
     }
 
     fn add_instance(&mut self, object: &Object, id: Id<scene::Prototype>, context: Context, parts: &mut Parts) {
-        let prototype = &self.scene.prototypes[id];
-        // A prototype that is still being compiled, and so is not in the list yet, cannot be referred to.
-        let Some(space) = self.prototypes.get(id.index()) else { return };
-        let has_instances = space.primitives.iter().any(|p| matches!(p, Primitive::Instance { .. }));
-        let is_nested = self.prototypes.len() < self.scene.prototypes.len();
-        if has_instances || is_nested || space.primitives.len() as u64 <= COPIED_PROTOTYPE {
-            // Two levels and no more: within a prototype, instances are copied.
-            prototype.objects.iter().for_each(|member| self.add(member, context, parts));
+        // One only refers to those before it.
+        if id.index() >= context.before {
             return;
         }
-        let Context { space_from_parent: space_from_object, material } = context;
+        let prototype = &self.scene.prototypes[id];
+        let is_nested = context.before < self.scene.prototypes.len();
+        let place = self.places.get(id.index()).copied().unwrap_or(NONE);
+        let Some(space) = self.prototypes.get(place as usize).filter(|_| !is_nested) else {
+            // Two levels and no more: within a prototype, instances are copied.
+            let context = Context { before: id.index(), ..context };
+            prototype.objects.iter().for_each(|member| self.add(member, context, parts));
+            return;
+        };
+        let Context { space_from_parent: space_from_object, material, .. } = context;
         let bounds = placed_bounds(&space_from_object, &space.total_bounds());
         let is_opaque = space.attributes.iter().all(|attributes| attributes.is_opaque) && self.is_opaque(material);
-        let attributes = self.attributes(object, &prototype.name, material, is_opaque);
+        let attributes = self.attributes(object, || prototype.name.clone().into(), material, is_opaque);
         let placement = parts.add_placement(space_from_object);
-        let primitive = Primitive::Instance { prototype: id.index() as u32, placement, material };
+        let primitive = Primitive::Instance { prototype: place, placement, material };
         parts.push(bounds, primitive, attributes);
     }
 
@@ -274,6 +326,9 @@ impl Compiler<'_> {
         for k in 0..layers {
             for j in 0..rows {
                 for i in 0..columns {
+                    if self.failed {
+                        return;
+                    }
                     self.next_object = first_object;
                     let offset =
                         grid.step[0] * f64::from(i) + grid.step[1] * f64::from(j) + grid.step[2] * f64::from(k);
@@ -289,20 +344,43 @@ impl Compiler<'_> {
         material != NONE && !self.transparent[material as usize]
     }
 
-    fn attributes(&mut self, object: &Object, kind: &str, material: u32, is_opaque: bool) -> Attributes {
+    /// True where what has a material must be found again in its object's own space. Without one, an instance may bring any.
+    fn looks_at_object(&self, material: u32) -> bool {
+        material == NONE || self.spaces.get(material as usize).is_none_or(|spaces| spaces.object || spaces.uv)
+    }
+
+    /// Of the next object, which is called after its kind and number unless it has a name.
+    fn attributes(
+        &mut self,
+        object: &Object,
+        kind: impl FnOnce() -> Cow<'static, str>,
+        material: u32,
+        is_opaque: bool,
+    ) -> Attributes {
         let number = self.next_object;
         self.next_object += 1;
         if number as usize == self.names.len() {
-            self.names.push(object.name.clone().unwrap_or_else(|| format!("{kind} {}", number + 1)));
+            self.names.push(object.name.as_deref(), kind);
         }
         Attributes { object: number, material, object_space: NONE, is_opaque }
     }
 }
 
 impl Parts {
+    fn with_capacity(count: usize) -> Self {
+        Self {
+            primitives: Vec::with_capacity(count),
+            attributes: Vec::with_capacity(count),
+            bounds: Vec::with_capacity(count),
+            ..Self::default()
+        }
+    }
+
     fn push(&mut self, bounds: Bounds3, primitive: Primitive, attributes: Attributes) {
         if bounds.is_finite() {
-            self.bounded.push((bounds, primitive, attributes));
+            self.primitives.push(primitive);
+            self.attributes.push(attributes);
+            self.bounds.push(bounds);
         } else if !bounds.is_empty() {
             self.unbounded.push((primitive, attributes));
         }
@@ -323,20 +401,12 @@ impl Parts {
         self.object_spaces.len() as u32 - 1
     }
 
-    fn finish(self) -> Result<Space, BuildError> {
-        let count = self.bounded.len() + self.unbounded.len();
-        let (mut primitives, mut attributes) = (Vec::with_capacity(count), Vec::with_capacity(count));
-        let mut bounds = Vec::with_capacity(self.bounded.len());
-        for (b, primitive, attribute) in self.bounded {
-            bounds.push(b);
-            primitives.push(primitive);
-            attributes.push(attribute);
+    fn finish(mut self) -> Result<Space, BuildError> {
+        for (primitive, attributes) in self.unbounded {
+            self.primitives.push(primitive);
+            self.attributes.push(attributes);
         }
-        for (primitive, attribute) in self.unbounded {
-            primitives.push(primitive);
-            attributes.push(attribute);
-        }
-        let Self { shapes, placements, object_spaces, .. } = self;
+        let Self { primitives, attributes, bounds, shapes, placements, object_spaces, .. } = self;
         Space::new(primitives, attributes, bounds, shapes, placements, object_spaces)
     }
 }

@@ -118,7 +118,7 @@ pub fn draw(scene: &CompiledScene, settings: &DrawingSettings) -> Result<Page, V
         line_width: drawing.line_width,
         depths: depth_range(&camera, &bounds),
     };
-    let name = |object: u32| scene.object_names.get(object as usize).cloned().unwrap_or_default();
+    let name = |object: u32| scene.object_names.get(object).unwrap_or_default().into_owned();
     page.groups = sheet::groups(&seen, &screen, &style, &page_from_raster, name);
     page.groups.extend(marks::groups(&marks, &seen, &screen, &page_from_raster));
     for plot in &settings.plots {
