@@ -33,6 +33,19 @@ impl PixelSum {
         finite
     }
 
+    /// The mean of a pixel that has this sample alone, and whether it is finite: what [`PixelSum::add`] and [`PixelSum::mean`] give,
+    /// without a sum.
+    #[inline]
+    pub fn mean_of_one(sample: Rgb) -> (Rgb, bool) {
+        if !sample.is_finite() {
+            return (Rgb::BLACK, false);
+        }
+        (
+            sample.map(|component| (rounded(f64::from(component).clamp(-BRIGHTEST, BRIGHTEST) / UNIT) * UNIT) as f32),
+            true,
+        )
+    }
+
     /// What a pixel of one sample holds, from its [`PixelSum::mean`]: nothing is lost on the way, since a sum that is finer than an
     /// `f32` is a small one, of less than 25 bits.
     pub fn of_one(mean: Rgb) -> Self {
@@ -67,9 +80,15 @@ impl PixelSum {
 /// Adding a number whose last bit is worth one makes the addition itself round; there is an instruction for that on every
 /// machine, which there is not for `round_ties_even`.
 #[inline]
-fn round(value: f64) -> i64 {
+fn rounded(value: f64) -> f64 {
     const LAST_BIT_IS_ONE: f64 = 1.5 * (1_u64 << 52) as f64;
-    (value + LAST_BIT_IS_ONE - LAST_BIT_IS_ONE) as i64
+    value + LAST_BIT_IS_ONE - LAST_BIT_IS_ONE
+}
+
+/// As [`rounded`], as an integer.
+#[inline]
+fn round(value: f64) -> i64 {
+    rounded(value) as i64
 }
 
 #[cfg(test)]
@@ -106,8 +125,10 @@ mod tests {
         #[test]
         fn one_sample_is_known_by_its_mean(sample in prop::array::uniform3(prop_oneof![-2e6..2e6f32, -1e-6..1e-6f32, any::<f32>()])) {
             let mut pixel = PixelSum::default();
-            let _ = pixel.add(Rgb::from(sample));
+            let is_finite = pixel.add(Rgb::from(sample));
             prop_assert_eq!(PixelSum::of_one(pixel.mean()), pixel);
+            let (mean, is_finite_too) = PixelSum::mean_of_one(Rgb::from(sample));
+            prop_assert_eq!((mean, is_finite_too), (pixel.mean(), is_finite));
         }
     }
 

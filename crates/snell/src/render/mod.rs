@@ -291,6 +291,11 @@ impl<I: Integrator> Job<'_, I> {
             let colors = self.tracer().trace(&rays, scratch, &mut statistics, &mut NoObserver, watch);
             let mut nonfinite = 0;
             means.extend(colors.chunks_exact(per_pixel).map(|colors| {
+                if let [color] = colors {
+                    let (mean, is_finite) = PixelSum::mean_of_one(*color);
+                    nonfinite += u64::from(!is_finite);
+                    return mean;
+                }
                 let mut sum = PixelSum::default();
                 for &color in colors {
                     nonfinite += u64::from(!sum.add(color));
