@@ -10,13 +10,8 @@ use super::{Geometry, Hit, LocalHit, QueryScratch};
 impl Geometry {
     /// True where any surface is met with 0 < t < `distance`.
     pub fn is_blocked(&self, ray: &Ray, distance: f64, scratch: &mut QueryScratch) -> bool {
-        self.world.any(ray, distance, |_, primitive| match primitive {
-            Primitive::Instance { prototype, placement, .. } => {
-                let space = &self.prototypes[*prototype as usize];
-                let ray = self.world.placements[*placement as usize].to_local(ray);
-                space.any(&ray, distance, |_, primitive| self.is_met(space, primitive, &ray, distance, scratch))
-            }
-            primitive => self.is_met(&self.world, primitive, ray, distance, scratch),
+        self.world.any(ray, distance, |index, primitive| {
+            self.is_blocked_by(index, primitive, ray, distance, true, |_| (), scratch)
         })
     }
 

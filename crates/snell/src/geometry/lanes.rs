@@ -130,8 +130,7 @@ impl Geometry {
         hits: &mut HitRows,
         scratch: &mut QueryScratch,
     ) {
-        let ray =
-            LaneRay { origin: LaneVector::load(&rays.origin, at), direction: LaneVector::load(&rays.direction, at) };
+        let ray = LaneRay::<L>::load(&rays.origin, &rays.direction, at);
         let along = L::splat(TOUCHING) * ray.origin.max_abs();
         let infinity = L::splat(f64::INFINITY);
         let mut nearest = Nearest { key: infinity, t: infinity, index: L::splat(-1.0), complex: Bits::NONE };
@@ -200,15 +199,7 @@ impl Geometry {
             let ray = rays.ray(at + lane);
             let touching = Touching::along(&ray);
             let limit = lane_of(nearest.key, lane);
-            let hit = match primitive {
-                Primitive::Instance { prototype, placement, .. } => {
-                    self.intersect_instance(*prototype, *placement, &ray, touching, limit, scratch)
-                }
-                _ => self
-                    .intersect_primitive(&self.world, primitive, &ray, 0.0, limit.next_up(), scratch)
-                    .map(|local| touching.candidate(local, is_opaque)),
-            };
-            if let Some(hit) = hit
+            if let Some(hit) = self.meet_in_world(primitive, is_opaque, &ray, touching, limit, scratch)
                 && (hit.t() < limit || hit.t() == limit && nearest.without_hit().has(lane))
             {
                 nearest.keep(lane, at, index, hit, hits);
@@ -253,8 +244,7 @@ impl Geometry {
         blockers: &mut Blockers,
         scratch: &mut QueryScratch,
     ) {
-        let ray =
-            &LaneRay { origin: LaneVector::load(&rows.origin, at), direction: LaneVector::load(&rows.direction, at) };
+        let ray = &LaneRay::<L>::load(&rows.origin, &rows.direction, at);
         let distance = L::load(&rows.distance, at);
         blockers.blocked = Bits::NONE;
         blockers.hits.clear();
@@ -321,8 +311,7 @@ impl Geometry {
         met: Bits,
         surfaces: &mut SurfaceRows,
     ) {
-        let ray =
-            LaneRay { origin: LaneVector::load(&rays.origin, at), direction: LaneVector::load(&rays.direction, at) };
+        let ray = LaneRay::<L>::load(&rays.origin, &rays.direction, at);
         let t = L::load(&hits.t, at);
         let (mut spheres, mut planes) = (Bits::NONE, Bits::NONE);
         let (mut place, mut normal, mut radius) = ([[0.0; WIDTH]; 3], [[0.0; WIDTH]; 3], [1.0; WIDTH]);

@@ -24,7 +24,7 @@ pub(crate) mod tests;
 mod torus;
 pub mod triangle_mesh;
 
-use snell_math::lanes::{LaneVector, Lanes};
+use snell_math::lanes::{LaneVector, Lanes, WIDTH};
 use snell_math::{Bounds3, Normal3, Point3, Ray, Transform};
 
 pub use cuboid::Cuboid;
@@ -54,6 +54,14 @@ pub struct ShapeHit {
 pub(crate) struct LaneRay<L> {
     pub(crate) origin: LaneVector<L>,
     pub(crate) direction: LaneVector<L>,
+}
+
+impl<L: Lanes> LaneRay<L> {
+    /// From rows, see [`Lanes::load`].
+    #[inline(always)]
+    pub(crate) fn load(origin: &[[f64; WIDTH]; 3], direction: &[[f64; WIDTH]; 3], at: usize) -> Self {
+        Self { origin: LaneVector::load(origin, at), direction: LaneVector::load(direction, at) }
+    }
 }
 
 impl<L: Lanes> From<&Ray> for LaneRay<L> {
