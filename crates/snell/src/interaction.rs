@@ -75,6 +75,8 @@ pub struct SurfaceRows {
     pub solid: [SolidId; WIDTH],
     /// The whole interaction, of the hits that were worked out one by one.
     pub whole: [Option<SurfaceInteraction>; WIDTH],
+    /// The hits whose objects stand in the world as they are, so that points of the world are points of theirs.
+    pub unplaced: Bits,
 }
 
 impl Default for SurfaceRows {
@@ -87,6 +89,7 @@ impl Default for SurfaceRows {
             material: [0; WIDTH],
             solid: [SolidId(0); WIDTH],
             whole: [const { None }; WIDTH],
+            unplaced: Bits::NONE,
         }
     }
 }
@@ -135,6 +138,13 @@ impl<L: Lanes> LaneSurface<L> {
         let outward = self.geometric_normal;
         let side = (-self.error).or_where_not(outward.dot(direction).lt(L::splat(0.0)), self.error);
         self.point + outward * side
+    }
+
+    /// As [`SurfaceInteraction::inside`].
+    #[inline(always)]
+    pub fn inside(&self) -> LaneVector<L> {
+        let depth = L::splat(8.0) * self.error + L::splat(RELATIVE_INSET) * self.point.max_abs();
+        self.geometric_normal * -depth
     }
 
     /// Where a direction that leaves the surface goes to its outward side.

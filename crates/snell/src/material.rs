@@ -4,13 +4,13 @@
 //! and asks nothing of the heap. Its lobes are of two kinds, as the lecture's `shade` has them: those summed over lights
 //! (diffuse, highlight) and those that spawn rays (mirror, interface).
 
-use snell_math::lanes::{Bits, Floats, LaneColor, LaneVector, Lanes, WIDTH};
-use snell_math::{Rgb, Vector3, portable};
+use snell_math::lanes::{Bits, Floats, LaneColor, LaneVector, Lanes, WIDTH, power_to_f32};
+use snell_math::{Rgb, Vector3};
 use snell_scene::Id;
 use snell_scene::scene;
 
 use crate::interaction::SurfaceInteraction;
-use crate::texture::{Footprint, Spaces, TextureCoordinates, Textures};
+use crate::texture::{Footprint, LaneCoordinates, Spaces, TextureCoordinates, Textures};
 
 /// What a surface does with light at one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -191,15 +191,10 @@ fn highlight<L: Lanes>(cosine: L, shininess: f32, asked: Bits) -> L::Floats {
     // Beyond this the result is no f32 but zero; the logarithm is by far the dearest part of a small scene's shading.
     let vanishing = (exponent * (L::splat(1.0) - cosine)).gt(L::splat(104.0));
     let visible = asked.without(cosine.le(L::splat(0.0)) | vanishing);
-    let mut powers = [0.0; WIDTH];
-    if visible.any() {
-        let mut cosines = [0.0; WIDTH];
-        cosine.store(&mut cosines, 0);
-        for lane in visible.lanes() {
-            powers[lane] = portable::pow(cosines[lane].min(1.0), f64::from(shininess)) as f32;
-        }
+    if visible.is_empty() {
+        return Floats::splat(0.0);
     }
-    Floats::load(&powers, 0)
+    power_to_f32(L::splat(1.0).smaller(cosine), f64::from(shininess), visible)
 }
 
 /// A material, ready to be evaluated.
@@ -208,6 +203,8 @@ pub struct Material {
     /// All lobes with their constant colours; those in `textured` are filled in at the hit.
     base: Bsdf,
     textured: Vec<(Slot, Id<scene::Texture>)>,
+    /// All of those can be evaluated side by side.
+    is_plain: bool,
     /// The inside of the body, where it is transparent.
     pub body: Option<Body>,
 }
@@ -241,6 +238,7 @@ impl Material {
         let mut compiled = Self {
             base: Bsdf { shininess: material.shininess, one_sided: material.one_sided, ..Bsdf::BLACK },
             textured: Vec::new(),
+            is_plain: false,
             body: None,
         };
         if let Some(dielectric) = &material.dielectric {
@@ -263,13 +261,19 @@ impl Material {
                 compiled.fill(slot, texture, textures);
             }
         }
+        compiled.is_plain = compiled.textured.iter().all(|&(_, texture)| textures.plain_checker(texture).is_some());
         compiled
     }
 
     /// What an object without a material has: a light grey, matt surface, reflectance 0.8.
     pub fn unspecified() -> Self {
         let gray = Rgb::gray(0.8);
-        Self { base: Bsdf { ambient: gray, diffuse: gray, ..Bsdf::BLACK }, textured: Vec::new(), body: None }
+        Self {
+            base: Bsdf { ambient: gray, diffuse: gray, ..Bsdf::BLACK },
+            textured: Vec::new(),
+            is_plain: true,
+            body: None,
+        }
     }
 
     /// Which coordinates of a hit matter.
@@ -281,6 +285,39 @@ impl Material {
     #[inline]
     pub fn constant_bsdf(&self) -> Option<&Bsdf> {
         self.textured.is_empty().then_some(&self.base)
+    }
+
+    /// True where the lobes can be had side by side at hits whose objects stand in the world as they are.
+    #[inline]
+    pub fn is_plain(&self) -> bool {
+        self.is_plain
+    }
+
+    /// The lobes at such hits, of a material that [is plain](Material::is_plain): as [`Material::bsdf`] gives them one by one.
+    #[inline(always)]
+    pub fn lane_bsdf<L: Lanes>(&self, textures: &Textures, at: &LaneCoordinates<L>) -> LaneBsdf<L> {
+        let mut bsdf = LaneBsdf::splat(&self.base);
+        let mut before = None;
+        for &(slot, texture) in &self.textured {
+            let color = match before {
+                Some((same, color)) if same == texture => color,
+                _ => match textures.plain_checker(texture) {
+                    Some(checker) => checker.evaluate(at),
+                    None => continue,
+                },
+            };
+            match slot {
+                Slot::Emission => bsdf.emission = color,
+                Slot::Ambient => bsdf.ambient = color,
+                Slot::Diffuse => bsdf.diffuse = color,
+                Slot::Specular => bsdf.specular = color,
+                Slot::Mirror => bsdf.mirror = color,
+                Slot::Reflect => bsdf.reflect = color,
+                Slot::Transmit => bsdf.transmit = color,
+            }
+            before = Some((texture, color));
+        }
+        bsdf
     }
 
     /// The lobes at a hit.
@@ -338,6 +375,8 @@ fn slot_of(bsdf: &mut Bsdf, slot: Slot) -> &mut Rgb {
 
 #[cfg(test)]
 mod tests {
+    use snell_math::portable;
+
     use super::*;
 
     #[test]

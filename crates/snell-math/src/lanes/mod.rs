@@ -36,6 +36,7 @@
 
 mod bits;
 mod portable;
+mod power;
 #[cfg(test)]
 mod tests;
 mod vector;
@@ -46,6 +47,7 @@ use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 pub use bits::Bits;
+pub use power::power_to_f32;
 pub use vector::{LaneColor, LaneVector};
 
 /// How many numbers stand in one row of memory: the most lanes there are.
@@ -95,6 +97,13 @@ pub trait Lanes:
     fn to_floats(self) -> Self::Floats;
     /// Every `f32` is an `f64`.
     fn from_floats(floats: Self::Floats) -> Self;
+    /// Rounded down to a whole number.
+    fn floor(self) -> Self;
+    /// The exponent of the power of two that is the largest below the magnitude, of normal numbers; −1023 for those too small to be
+    /// normal, 1024 for what is infinite or NaN.
+    fn exponent(self) -> Self;
+    /// Times two to the power of whole numbers from −1022 to 1023; with others what comes of it means nothing.
+    fn times_power_of_two(self, power: Self) -> Self;
 
     /// Where this is greater; never with NaN.
     #[inline(always)]

@@ -61,6 +61,18 @@ impl Lanes for f64 {
     fn from_floats(floats: f32) -> Self {
         f64::from(floats)
     }
+    #[inline(always)]
+    fn floor(self) -> Self {
+        f64::floor(self)
+    }
+    #[inline(always)]
+    fn exponent(self) -> Self {
+        (self.to_bits() >> 52 & 0x7ff) as f64 - 1023.0
+    }
+    #[inline(always)]
+    fn times_power_of_two(self, power: Self) -> Self {
+        self * f64::from_bits(((power as i64).wrapping_add(1023) as u64) << 52)
+    }
 }
 
 impl Floats for f32 {
@@ -192,6 +204,18 @@ impl Lanes for Eight {
     #[inline(always)]
     fn from_floats(floats: EightFloats) -> Self {
         Self(floats.0.map(f64::from))
+    }
+    #[inline(always)]
+    fn floor(self) -> Self {
+        Self(self.0.map(f64::floor))
+    }
+    #[inline(always)]
+    fn exponent(self) -> Self {
+        Self(self.0.map(Lanes::exponent))
+    }
+    #[inline(always)]
+    fn times_power_of_two(self, power: Self) -> Self {
+        Self(from_fn(|i| self.0[i].times_power_of_two(power.0[i])))
     }
 }
 

@@ -184,6 +184,27 @@ impl Lanes for Eight512 {
         // SAFETY: as above.
         unsafe { Self(_mm512_cvtps_pd(floats.0)) }
     }
+    #[inline(always)]
+    fn floor(self) -> Self {
+        // SAFETY: as above.
+        unsafe { Self(_mm512_roundscale_pd::<{ _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC }>(self.0)) }
+    }
+    #[inline(always)]
+    fn exponent(self) -> Self {
+        // SAFETY: as above.
+        unsafe {
+            let field = _mm512_srli_epi64::<53>(_mm512_slli_epi64::<1>(_mm512_castpd_si512(self.0)));
+            Self(_mm512_sub_pd(_mm512_cvtepi64_pd(field), _mm512_set1_pd(1023.0)))
+        }
+    }
+    #[inline(always)]
+    fn times_power_of_two(self, power: Self) -> Self {
+        // SAFETY: as above.
+        unsafe {
+            let field = _mm512_add_epi64(_mm512_cvtpd_epi64(power.0), _mm512_set1_epi64(1023));
+            Self(_mm512_mul_pd(self.0, _mm512_castsi512_pd(_mm512_slli_epi64::<52>(field))))
+        }
+    }
 }
 
 impl Lanes for Eight256 {
@@ -282,7 +303,51 @@ impl Lanes for Eight256 {
             Self(_mm256_cvtps_pd(_mm256_castps256_ps128(floats.0)), _mm256_cvtps_pd(high))
         }
     }
+    #[inline(always)]
+    fn floor(self) -> Self {
+        // SAFETY: as above.
+        unsafe { Self(_mm256_floor_pd(self.0), _mm256_floor_pd(self.1)) }
+    }
+    #[inline(always)]
+    fn exponent(self) -> Self {
+        // SAFETY: as above.
+        unsafe { Self(exponent(self.0), exponent(self.1)) }
+    }
+    #[inline(always)]
+    fn times_power_of_two(self, power: Self) -> Self {
+        // SAFETY: as above.
+        unsafe { Self(_mm256_mul_pd(self.0, power_of_two(power.0)), _mm256_mul_pd(self.1, power_of_two(power.1))) }
+    }
 }
+
+/// See [`Lanes::exponent`]. Small whole numbers become `f64` in the low bits of 2⁵².
+///
+/// # Safety
+/// The machine has AVX2.
+#[inline(always)]
+unsafe fn exponent(numbers: __m256d) -> __m256d {
+    // SAFETY: the caller knows.
+    unsafe {
+        let field = _mm256_srli_epi64::<53>(_mm256_slli_epi64::<1>(_mm256_castpd_si256(numbers)));
+        let whole = _mm256_or_si256(field, _mm256_castpd_si256(_mm256_set1_pd(TWO_TO_52)));
+        _mm256_sub_pd(_mm256_castsi256_pd(whole), _mm256_set1_pd(TWO_TO_52 + 1023.0))
+    }
+}
+
+/// Two to the power of whole numbers, see [`Lanes::times_power_of_two`]: their low bits in the place of an exponent's.
+///
+/// # Safety
+/// The machine has AVX2.
+#[inline(always)]
+unsafe fn power_of_two(power: __m256d) -> __m256d {
+    // SAFETY: the caller knows.
+    unsafe {
+        let whole = _mm256_add_pd(power, _mm256_set1_pd(TWO_TO_52 + 1023.0));
+        _mm256_castsi256_pd(_mm256_slli_epi64::<52>(_mm256_castpd_si256(whole)))
+    }
+}
+
+const TWO_TO_52: f64 = (1_u64 << 52) as f64;
 
 /// The signs of two halves as bits.
 ///

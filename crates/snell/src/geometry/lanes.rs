@@ -7,7 +7,7 @@
 use snell_math::lanes::{Bits, LaneVector, Lanes, WIDTH};
 use snell_math::{Point3, Ray, Vector3};
 
-use super::space::{NONE, Primitive};
+use super::space::{Attributes, NONE, Primitive};
 use super::{Geometry, Hit, InnerHit, LocalPlace, QueryScratch, TOUCHING, Touching};
 use crate::accel::Candidate;
 use crate::interaction::{SolidId, SurfaceInteraction, SurfaceRows};
@@ -301,26 +301,28 @@ impl Geometry {
         t.le(L::splat(TOUCHING) * origin.max_abs())
     }
 
-    /// Works out hits of rays side by side, from place `at` of the rows on.
+    /// Works out hits of rays side by side, from place `at` of the rows on, of the rays' origins and directions.
     #[inline(always)]
     pub(crate) fn surfaces<L: Lanes>(
         &self,
-        rays: &RayRows,
+        (origin, direction): (&[[f64; WIDTH]; 3], &[[f64; WIDTH]; 3]),
         at: usize,
         hits: &HitRows,
         met: Bits,
         surfaces: &mut SurfaceRows,
     ) {
-        let ray = LaneRay::<L>::load(&rays.origin, &rays.direction, at);
+        let ray = LaneRay::<L>::load(origin, direction, at);
         let t = L::load(&hits.t, at);
         let (mut spheres, mut planes) = (Bits::NONE, Bits::NONE);
         let (mut place, mut normal, mut radius) = ([[0.0; WIDTH]; 3], [[0.0; WIDTH]; 3], [1.0; WIDTH]);
+        let mut unplaced = 0;
         for lane in met.lanes() {
             let index = hits.primitive[at + lane];
             surfaces.whole[at + lane] = None;
             surfaces.solid[at + lane] = SolidId(u64::from(index) << 32 | u64::from(NONE));
-            let own = self.world.attributes[index as usize].material;
+            let Attributes { material: own, object_space, .. } = self.world.attributes[index as usize];
             surfaces.material[at + lane] = if own == NONE { self.default_material } else { own };
+            unplaced |= u8::from(object_space == NONE) << lane;
             match &self.world.primitives[index as usize] {
                 Primitive::Sphere(sphere) => {
                     spheres |= Bits::lane(lane);
@@ -333,9 +335,14 @@ impl Geometry {
                     set_column(&mut place, at + lane, point.to_array());
                     set_column(&mut normal, at + lane, unit.to_array());
                 }
-                _ => self.surface_one_by_one(&rays.ray(at + lane), hits, at + lane, surfaces),
+                _ => {
+                    let origin = Point3::from(column(origin, at + lane));
+                    let ray = Ray::new(origin, Vector3::from(column(direction, at + lane)));
+                    self.surface_one_by_one(&ray, hits, at + lane, surfaces);
+                }
             }
         }
+        surfaces.unplaced = Bits(unplaced) & (spheres | planes);
         if spheres.any() {
             let lanes = LaneSpheres::<L> { center: LaneVector::load(&place, at), radius: L::load(&radius, at) };
             let (point, normal, error) = lanes.surface(&ray, t);

@@ -20,7 +20,7 @@ use crate::material::{LaneBsdf, Material};
 use crate::observe::Observer;
 use crate::optics::{beer_lambert, fresnel_dielectric_lanes, reflect_lanes, refract_lanes};
 use crate::task::{Band, Crossing, Inside, MediumStack, RayKind, RayRows, RayTask, Term, column, set_column};
-use crate::texture::ViewProjection;
+use crate::texture::{LaneCoordinates, ViewProjection};
 
 /// Recursive ray tracing over lights without extent.
 #[derive(Clone, Debug)]
@@ -106,7 +106,8 @@ impl Integrator for Whitted {
         if met.is_empty() {
             return;
         }
-        scene.geometry.surfaces::<L>(rays.rows, at, hits, met, surfaces);
+        let ends = (&rays.rows.origin, &rays.rows.direction);
+        scene.geometry.surfaces::<L>(ends, at, hits, met, surfaces);
         if out.is_watched() {
             for lane in met.lanes() {
                 let interaction = scene.geometry.interaction_of(hits, surfaces, at + lane);
@@ -372,6 +373,11 @@ fn lobes<L: Lanes>(
     let is_colored = |lane: usize| surfaces.whole[at + lane].is_some_and(|whole| whole.vertex_color.is_some());
     match material.constant_bsdf() {
         Some(constant) if !met.lanes().any(is_colored) => LaneBsdf::splat(constant),
+        None if material.is_plain() && met.without(surfaces.unplaced).is_empty() => {
+            let surface = LaneSurface::<L>::load(surfaces, at);
+            let coordinates = LaneCoordinates { point: surface.point, inside: surface.inside() };
+            material.lane_bsdf(&scene.textures, &coordinates)
+        }
         _ => LaneBsdf::gather(met.lanes().map(|lane| {
             let interaction = scene.geometry.interaction_of(hits, surfaces, at + lane);
             (lane, material.bsdf(&scene.textures, &interaction))

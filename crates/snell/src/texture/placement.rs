@@ -7,16 +7,16 @@ use super::coordinates::{RELATIVE_INSET, TextureCoordinates};
 
 /// Where a pattern stands.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Placement {
+pub struct Placement {
     space: Space,
     /// Nothing moves: skips the arithmetic.
-    is_identity: bool,
+    pub(super) is_identity: bool,
     /// The images of the unit vectors x, y and z.
-    columns: [Vector3; 3],
+    pub(super) columns: [Vector3; 3],
     /// The image of the origin.
-    origin: Point3,
+    pub(super) origin: Point3,
     /// Bounds the largest coordinate of a vector's image by the vector's own largest (the matrix's maximum norm).
-    growth: f64,
+    pub(super) growth: f64,
     /// The length of the longest column: what a footprint grows by (the most it can, where the columns are perpendicular).
     stretch: f64,
 }
@@ -42,6 +42,11 @@ impl Placement {
             growth: row(0).max(row(1)).max(row(2)),
             stretch: columns.iter().map(|column| column.length()).fold(0.0, f64::max),
         }
+    }
+
+    /// Which coordinates it starts from.
+    pub fn space(&self) -> Space {
+        self.space
     }
 
     /// True where the coordinates are (u, v, 0), so that a pattern has two dimensions.

@@ -5,23 +5,38 @@
 //! that comes from the rarer side, which is symmetric: a straight ray can not meet total internal reflection. Bodies nest as
 //! they do for other rays, by the same stack.
 
-use snell_math::lanes::{Bits, LaneColor, Lanes, WIDTH};
-use snell_math::{Ray, Rgb};
-use snell_scene::scene::Shadows;
+use snell_math::Rgb;
+use snell_math::lanes::{Bits, LaneColor, LaneVector, Lanes, WIDTH};
+use snell_scene::scene::{Medium, Shadows};
 
 use crate::compile::CompiledScene;
-use crate::geometry::{Blockers, Geometry, Hit, QueryScratch};
+use crate::geometry::{Blockers, Geometry, Hit, HitRows, QueryScratch};
+use crate::interaction::{LaneSurface, SurfaceRows};
 use crate::observe::Observer;
-use crate::optics;
+use crate::optics::{self, fresnel_dielectric_lanes};
 use crate::statistics::Statistics;
-use crate::task::{Inside, MediumStack, MediumStacks, QuestionRows, ShadowQuestion, column, set_column};
+use crate::task::{Inside, MediumStack, MediumStacks, QuestionRows, column, set_column};
 
 /// Where the hits of shadow rays are gathered.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct ShadowScratch {
     blockers: Blockers,
-    /// Those of one ray.
-    hits: Vec<Hit>,
+    /// Those of each ray, in the order in which they are met.
+    hits: [Vec<Hit>; WIDTH],
+    /// The surfaces that the rays have come to.
+    met: HitRows,
+    surfaces: SurfaceRows,
+}
+
+impl Default for ShadowScratch {
+    fn default() -> Self {
+        Self {
+            blockers: Blockers::default(),
+            hits: [const { Vec::new() }; WIDTH],
+            met: HitRows::NOTHING,
+            surfaces: SurfaceRows::default(),
+        }
+    }
 }
 
 /// What answers depend on.
@@ -51,31 +66,21 @@ pub fn answer<L: Lanes, O: Observer>(
     observer: &mut O,
 ) {
     let mut blocked = Bits::NONE;
-    let mut transmittance = [[1.0; WIDTH]; 3];
+    let mut transmitted = LaneColor::splat(Rgb::WHITE);
     if context.shadows != Shadows::None {
         statistics.shadow_rays += u64::from(active.count());
         let any_blocks = context.shadows == Shadows::Opaque;
-        let ShadowScratch { blockers, hits } = scratch;
         let geometry = &context.scene.geometry;
-        geometry.block_lanes::<L>(rows, at, active, any_blocks, blockers, context.query);
-        blocked = blockers.blocked;
+        geometry.block_lanes::<L>(rows, at, active, any_blocks, &mut scratch.blockers, context.query);
+        blocked = scratch.blockers.blocked;
         if !any_blocks {
-            let is_filtered = |lane: &usize| rows.media[at + lane] != MediumStack::EMPTY;
-            if !blockers.hits.is_empty() || active.lanes().any(|lane| is_filtered(&lane)) {
-                for lane in active.without(blocked).lanes() {
-                    hits.clear();
-                    let of_lane = blockers.hits.iter().filter(|(of, _)| usize::from(*of) == lane);
-                    hits.extend(of_lane.map(|(_, hit)| *hit));
-                    if !hits.is_empty() || is_filtered(&lane) {
-                        hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.order().cmp(&b.order())));
-                        let share = context.filter(&rows.question(at + lane), hits);
-                        set_column(&mut transmittance, lane, share.to_array());
-                    }
-                }
+            let open = active.without(blocked);
+            let is_inside = open.lanes().any(|lane| rows.media[at + lane] != MediumStack::EMPTY);
+            if is_inside || !scratch.blockers.hits.is_empty() {
+                transmitted = context.filter::<L>(rows, at, open, scratch);
             }
         }
     }
-    let transmitted = LaneColor::<L::Floats>::load(&transmittance, 0);
     let (mut arriving, mut adding) = ([[[0.0; WIDTH]; 3]; 2], [Bits::NONE; 2]);
     for term in 0..2 {
         let share = LaneColor::<L::Floats>::load(&rows.shares[term], at);
@@ -86,6 +91,8 @@ pub fn answer<L: Lanes, O: Observer>(
     for lane in active.lanes() {
         if O::WATCHES {
             let is_blocked = blocked.has(lane);
+            let mut transmittance = [[0.0; WIDTH]; 3];
+            transmitted.store(&mut transmittance, 0);
             let transmittance = if is_blocked { Rgb::BLACK } else { Rgb::from(column(&transmittance, lane)) };
             observer.shadow(&rows.question(at + lane), transmittance);
         }
@@ -103,70 +110,125 @@ pub fn answer<L: Lanes, O: Observer>(
     }
 }
 
-impl Context<'_> {
-    /// The share of a light that arrives through the transparent surfaces in its way, in the order in which they are met.
-    #[inline(never)]
-    fn filter(&mut self, question: &ShadowQuestion, hits: &[Hit]) -> Rgb {
-        let ShadowQuestion { ray, distance, .. } = question;
-        filter(self.scene, ray, *distance, question, hits, self.media)
-    }
+/// How far shadow rays have come.
+struct Way<L: Lanes> {
+    /// The share of the light that is left.
+    share: LaneColor<L::Floats>,
+    /// The bodies around the rays.
+    media: [MediumStack; WIDTH],
+    /// The distance of the last surface.
+    from: [f64; WIDTH],
 }
 
-/// Walks along a shadow ray from boundary to boundary.
-fn filter(
-    scene: &CompiledScene,
-    ray: &Ray,
-    distance: f64,
-    question: &ShadowQuestion,
-    hits: &[Hit],
-    media: &mut MediumStacks,
-) -> Rgb {
-    let mut share = Rgb::WHITE;
-    let mut stack = question.media;
-    let mut from = 0.0;
-    for hit in hits {
-        let before = media.current(stack);
-        if let Some(inside) = before {
-            share *= extinction(scene, inside.material, hit.t - from, question.extinction_scale);
+impl Context<'_> {
+    /// The shares of lights that arrive in some lanes through the transparent surfaces in their way.
+    #[inline(always)]
+    fn filter<L: Lanes>(
+        &mut self,
+        rows: &QuestionRows,
+        at: usize,
+        lanes: Bits,
+        scratch: &mut ShadowScratch,
+    ) -> LaneColor<L::Floats> {
+        let ShadowScratch { blockers, hits, met, surfaces } = scratch;
+        hits.iter_mut().for_each(Vec::clear);
+        for (lane, hit) in &blockers.hits {
+            hits[usize::from(*lane)].push(*hit);
         }
-        from = hit.t;
-        let interaction = scene.interaction(ray, hit);
-        let material = &scene.materials[interaction.material as usize];
-        let (Some(body), Some(interface)) = (&material.body, material.bsdf(&scene.textures, &interaction).interface)
-        else {
-            return Rgb::BLACK;
-        };
-        let inside = Inside { solid: interaction.solid, material: interaction.material, priority: body.priority };
-        let leaving = interaction.is_outward(ray.direction);
-        let crossing = media.cross(stack, inside, leaving, Geometry::is_at_origin(ray, hit.t));
-        stack = crossing.after;
-        if crossing.is_without_effect() {
-            continue;
+        let mut way =
+            Way::<L> { share: LaneColor::splat(Rgb::WHITE), media: [MediumStack::EMPTY; WIDTH], from: [0.0; WIDTH] };
+        for lane in lanes.lanes() {
+            hits[lane].sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.order().cmp(&b.order())));
+            way.media[lane] = rows.media[at + lane];
         }
-        share *= interface.transmit;
-        if interface.fresnel {
-            let (a, b) = (scene.index_d(crossing.before), scene.index_d(crossing.beyond));
-            let cosine = interaction.shading_normal.dot(ray.direction).abs();
-            share = share * (1.0 - optics::fresnel_dielectric(cosine, a.min(b), a.max(b))) as f32;
+        for step in 0.. {
+            let mut meeting = 0;
+            for lane in lanes.without(way.share.is_black()).lanes() {
+                if let Some(hit) = hits[lane].get(step) {
+                    met.set(at + lane, Some(*hit));
+                    meeting |= 1 << lane;
+                }
+            }
+            if meeting == 0 {
+                break;
+            }
+            self.scene.geometry.surfaces::<L>((&rows.origin, &rows.direction), at, met, Bits(meeting), surfaces);
+            self.go_through(rows, at, Bits(meeting), met, surfaces, &mut way);
         }
-        if share.is_black() {
-            return Rgb::BLACK;
+        self.travel(rows, at, lanes, &rows.distance, &mut way);
+        way.share
+    }
+
+    /// Each of some rays goes on to a surface, and through it.
+    #[inline(always)]
+    fn go_through<L: Lanes>(
+        &mut self,
+        rows: &QuestionRows,
+        at: usize,
+        lanes: Bits,
+        met: &HitRows,
+        surfaces: &SurfaceRows,
+        way: &mut Way<L>,
+    ) {
+        let scene = self.scene;
+        self.travel(rows, at, lanes, &met.t, way);
+        let surface = LaneSurface::<L>::load(surfaces, at);
+        let direction = LaneVector::load(&rows.direction, at);
+        let leaving = surface.is_outward(direction);
+        let at_origin = Geometry::are_at_origin(LaneVector::load(&rows.origin, at), L::load(&met.t, at));
+        let (mut transmit, mut rarer, mut denser) = ([[1.0; WIDTH]; 3], [1.0; WIDTH], [1.0; WIDTH]);
+        for lane in lanes.lanes() {
+            way.from[lane] = met.t[at + lane];
+            let number = surfaces.material[at + lane];
+            let material = &scene.materials[number as usize];
+            let interface = match material.constant_bsdf() {
+                Some(bsdf) => bsdf.interface,
+                None => {
+                    let interaction = scene.geometry.interaction_of(met, surfaces, at + lane);
+                    material.bsdf(&scene.textures, &interaction).interface
+                }
+            };
+            let (Some(body), Some(interface)) = (&material.body, interface) else {
+                set_column(&mut transmit, lane, [0.0; 3]);
+                continue;
+            };
+            let inside = Inside { solid: surfaces.solid[at + lane], material: number, priority: body.priority };
+            let crossing = self.media.cross(way.media[lane], inside, leaving.has(lane), at_origin.has(lane));
+            way.media[lane] = crossing.after;
+            if crossing.is_without_effect() {
+                continue;
+            }
+            set_column(&mut transmit, lane, interface.transmit.to_array());
+            if interface.fresnel {
+                let (before, beyond) = (scene.index_d(crossing.before), scene.index_d(crossing.beyond));
+                (rarer[lane], denser[lane]) = (before.min(beyond), before.max(beyond));
+            }
+        }
+        // Where both indices are the same, nothing is reflected.
+        let cosine = surface.shading_normal.dot(direction).abs();
+        let reflectance = fresnel_dielectric_lanes(cosine, L::load(&rarer, 0), L::load(&denser, 0));
+        let through = way.share * LaneColor::load(&transmit, 0) * (L::splat(1.0) - reflectance).to_floats();
+        way.share = through.or_where_not(lanes, way.share);
+    }
+
+    /// Each of some rays travels up to a distance in what it is in.
+    #[inline(always)]
+    fn travel<L: Lanes>(&self, rows: &QuestionRows, at: usize, lanes: Bits, to: &[f64; WIDTH], way: &mut Way<L>) {
+        for lane in lanes.lanes() {
+            if let Some(inside) = self.media.current(way.media[lane])
+                && let Some(body) = &self.scene.materials[inside.material as usize].body
+                && !body.medium.is_clear()
+            {
+                let distance = to[at + lane] - way.from[lane];
+                let left = extinction(&body.medium, distance, rows.notes[at + lane].extinction_scale);
+                way.share = (way.share * LaneColor::splat(left)).or_where_not(Bits::lane(lane), way.share);
+            }
         }
     }
-    if let Some(inside) = media.current(stack) {
-        share *= extinction(scene, inside.material, distance - from, question.extinction_scale);
-    }
-    share
 }
 
 /// What is left after a stretch inside a body.
-fn extinction(scene: &CompiledScene, material: u32, distance: f64, scattering_scale: f32) -> Rgb {
-    match &scene.materials[material as usize].body {
-        Some(body) if !body.medium.is_clear() => {
-            let coefficient = body.medium.absorption + body.medium.scattering;
-            let scale = if body.medium.scattering.is_black() { 1.0 } else { scattering_scale };
-            optics::beer_lambert(coefficient * scale, distance)
-        }
-        _ => Rgb::WHITE,
-    }
+fn extinction(medium: &Medium, distance: f64, scattering_scale: f32) -> Rgb {
+    let scale = if medium.scattering.is_black() { 1.0 } else { scattering_scale };
+    optics::beer_lambert((medium.absorption + medium.scattering) * scale, distance)
 }
