@@ -35,6 +35,7 @@
 //! ```
 
 mod bits;
+mod end;
 mod portable;
 mod power;
 #[cfg(test)]
@@ -47,6 +48,7 @@ use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 pub use bits::Bits;
+pub use end::End;
 pub use power::power_to_f32;
 pub use vector::{LaneColor, LaneVector};
 
@@ -104,6 +106,28 @@ pub trait Lanes:
     fn exponent(self) -> Self;
     /// Times two to the power of whole numbers from −1022 to 1023; with others what comes of it means nothing.
     fn times_power_of_two(self, power: Self) -> Self;
+
+    /// Writes some lanes, counted from 0, to the end of rows that are partly full; see [`End`].
+    #[inline(always)]
+    fn append(self, end: End, rows: [&mut [f64; WIDTH]; 2]) {
+        let mut row = [0.0; WIDTH];
+        self.store(&mut row, 0);
+        end.append(&row, rows);
+    }
+    /// As [`Lanes::append`].
+    #[inline(always)]
+    fn append_floats(floats: Self::Floats, end: End, rows: [&mut [f32; WIDTH]; 2]) {
+        let mut row = [0.0; WIDTH];
+        floats.store(&mut row, 0);
+        end.append(&row, rows);
+    }
+    /// As [`Lanes::append`], of numbers that stand in a row from place `at` on.
+    #[inline(always)]
+    fn append_words(words: &[u32; WIDTH], at: usize, end: End, rows: [&mut [u32; WIDTH]; 2]) {
+        let mut row = [0; WIDTH];
+        row[..Self::COUNT].copy_from_slice(&words[at..][..Self::COUNT]);
+        end.append(&row, rows);
+    }
 
     /// Where this is greater; never with NaN.
     #[inline(always)]

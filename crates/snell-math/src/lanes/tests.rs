@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use super::{Bits, Floats, InstructionSet, LaneColor, LaneVector, Lanes, WIDTH, Work, dispatch};
+use super::{Bits, End, Floats, InstructionSet, LaneColor, LaneVector, Lanes, WIDTH, Work, dispatch};
 use crate::{Rgb, Vector3};
 
 /// Everything that lanes can do, on rows of numbers; a row of bits for each result.
@@ -133,6 +133,60 @@ proptest! {
         let lane = LaneColor::<f32>::splat(color);
         prop_assert_eq!(lane.is_black().any(), color.is_black());
         prop_assert!(lane.max_abs().to_bits() == color.max_abs().to_bits() || color.max_abs().is_nan());
+    }
+}
+
+/// Puts rows of numbers of every kind to the end of others.
+struct Appending<'a>(&'a [f64; WIDTH], Bits, usize);
+
+impl Work for Appending<'_> {
+    type Output = ([[f64; WIDTH]; 2], [[f32; WIDTH]; 2], [[u32; WIDTH]; 2]);
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Self::Output {
+        let (mut numbers, mut floats, mut words) = ([[-1.0; WIDTH]; 2], [[-1.0; WIDTH]; 2], [[7; WIDTH]; 2]);
+        let all = [3, 1, 4, 1, 5, 9, 2, 6];
+        let mut from = self.2;
+        for at in (0..WIDTH).step_by(L::COUNT) {
+            let lanes = Bits(self.1.0 >> at) & L::all();
+            let number = L::load(self.0, at);
+            // One at a time, it may be in the second row that the next one goes to.
+            if from < WIDTH {
+                let end = End { lanes, from };
+                number.append(end, two(&mut numbers));
+                L::append_floats(number.to_floats(), end, two(&mut floats));
+                L::append_words(&all, at, end, two(&mut words));
+            } else {
+                let end = End { lanes, from: from - WIDTH };
+                number.append(end, [&mut numbers[1], &mut [0.0; WIDTH]]);
+                L::append_floats(number.to_floats(), end, [&mut floats[1], &mut [0.0; WIDTH]]);
+                L::append_words(&all, at, end, [&mut words[1], &mut [0; WIDTH]]);
+            }
+            from += lanes.count() as usize;
+        }
+        (numbers, floats, words)
+    }
+}
+
+fn two<T>([first, second]: &mut [T; 2]) -> [&mut T; 2] {
+    [first, second]
+}
+
+#[test]
+fn lanes_go_to_the_end_of_rows() {
+    let row = std::array::from_fn(|lane| lane as f64 + 0.5);
+    for lanes in 0..=u8::MAX {
+        for from in 0..WIDTH {
+            let mut expected = [[-1.0; WIDTH]; 2];
+            for (place, lane) in (from..).zip(Bits(lanes).lanes()) {
+                expected[place / WIDTH][place % WIDTH] = row[lane];
+            }
+            let scalar = dispatch(InstructionSet::Scalar, Appending(&row, Bits(lanes), from));
+            assert_eq!(scalar.0, expected);
+            for set in InstructionSet::available() {
+                assert_eq!(dispatch(set, Appending(&row, Bits(lanes), from)), scalar, "{set:?} {lanes:08b} {from}");
+            }
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-use super::{Bits, Floats, Lanes, WIDTH};
+use super::{Bits, End, Floats, Lanes, WIDTH};
 use crate::{Normal3, Point3, Rgb, Vector3};
 
 /// Vectors or points, one in each lane.
@@ -38,6 +38,15 @@ impl<L: Lanes> LaneVector<L> {
         self.x.store(x, at);
         self.y.store(y, at);
         self.z.store(z, at);
+    }
+
+    /// See [`Lanes::append`].
+    #[inline(always)]
+    pub fn append(self, end: End, [first, second]: [&mut [[f64; WIDTH]; 3]; 2]) {
+        let ([x, y, z], [next_x, next_y, next_z]) = (first, second);
+        self.x.append(end, [x, next_x]);
+        self.y.append(end, [y, next_y]);
+        self.z.append(end, [z, next_z]);
     }
 
     /// As [`Vector3::dot`].
@@ -191,6 +200,15 @@ impl<F: Floats> LaneColor<F> {
         self.r.store(r, at);
         self.g.store(g, at);
         self.b.store(b, at);
+    }
+
+    /// See [`Lanes::append`].
+    #[inline(always)]
+    pub fn append<L: Lanes<Floats = F>>(self, end: End, [first, second]: [&mut [[f32; WIDTH]; 3]; 2]) {
+        let ([r, g, b], [next_r, next_g, next_b]) = (first, second);
+        L::append_floats(self.r, end, [r, next_r]);
+        L::append_floats(self.g, end, [g, next_g]);
+        L::append_floats(self.b, end, [b, next_b]);
     }
 
     /// As [`Rgb::is_black`].

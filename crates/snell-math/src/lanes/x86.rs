@@ -8,7 +8,7 @@ use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::OnceLock;
 
-use super::{Bits, Floats, Lanes, WIDTH, Work};
+use super::{Bits, End, Floats, Lanes, WIDTH, Work};
 
 /// Whether the machine has what [`Eight256`] needs.
 #[inline]
@@ -114,6 +114,7 @@ impl Lanes for Eight512 {
 
     #[inline(always)]
     fn stage<W: Work>(work: W) -> W::Output {
+        #[inline(never)]
         #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,bmi1,bmi2,lzcnt,popcnt")]
         fn with_instructions<W: Work>(work: W) -> W::Output {
             work.run::<Eight512>()
@@ -205,6 +206,63 @@ impl Lanes for Eight512 {
             Self(_mm512_mul_pd(self.0, _mm512_castsi512_pd(_mm512_slli_epi64::<52>(field))))
         }
     }
+    #[inline(always)]
+    fn append(self, end: End, [first, second]: [&mut [f64; WIDTH]; 2]) {
+        // SAFETY: as above; the rows have eight places.
+        unsafe {
+            let (sources, [to_first, to_second]) = moves(end);
+            let moved = _mm512_permutexvar_pd(sources, self.0);
+            _mm512_mask_storeu_pd(first.as_mut_ptr(), to_first, moved);
+            if to_second != 0 {
+                _mm512_mask_storeu_pd(second.as_mut_ptr(), to_second, moved);
+            }
+        }
+    }
+    #[inline(always)]
+    fn append_floats(floats: Floats512, end: End, [first, second]: [&mut [f32; WIDTH]; 2]) {
+        // SAFETY: as above; the rows have eight places.
+        unsafe {
+            let (sources, [to_first, to_second]) = moves(end);
+            let moved = _mm256_permutexvar_ps(_mm512_cvtepi64_epi32(sources), floats.0);
+            _mm256_mask_storeu_ps(first.as_mut_ptr(), to_first, moved);
+            if to_second != 0 {
+                _mm256_mask_storeu_ps(second.as_mut_ptr(), to_second, moved);
+            }
+        }
+    }
+    #[inline(always)]
+    fn append_words(words: &[u32; WIDTH], _: usize, end: End, [first, second]: [&mut [u32; WIDTH]; 2]) {
+        // SAFETY: as above; the rows have eight places.
+        unsafe {
+            let (sources, [to_first, to_second]) = moves(end);
+            let words = _mm256_loadu_si256(words.as_ptr().cast());
+            let moved = _mm256_permutexvar_epi32(_mm512_cvtepi64_epi32(sources), words);
+            _mm256_mask_storeu_epi32(first.as_mut_ptr().cast(), to_first, moved);
+            if to_second != 0 {
+                _mm256_mask_storeu_epi32(second.as_mut_ptr().cast(), to_second, moved);
+            }
+        }
+    }
+}
+
+/// For [`Lanes::append`]: for each place of a row the lane that goes there, and which places of both rows are written. The lanes that go to
+/// the second row come round to its beginning.
+///
+/// # Safety
+/// The machine has AVX-512.
+#[inline(always)]
+unsafe fn moves(end: End) -> (__m512i, [u8; 2]) {
+    // SAFETY: the caller knows.
+    unsafe {
+        let lanes = _mm512_setr_epi64(0, 1, 2, 3, 4, 5, 6, 7);
+        let together = _mm512_maskz_compress_epi64(end.lanes.0, lanes);
+        let turned = _mm512_sub_epi64(lanes, _mm512_set1_epi64(end.from as i64));
+        // Only the three lowest bits of a number count, so that it is taken modulo eight.
+        let sources = _mm512_permutexvar_epi64(turned, together);
+        let places = Bits::first(end.lanes.count() as usize).0;
+        let [first, second] = (u16::from(places) << end.from).to_le_bytes();
+        (sources, [first, second])
+    }
 }
 
 impl Lanes for Eight256 {
@@ -213,6 +271,7 @@ impl Lanes for Eight256 {
 
     #[inline(always)]
     fn stage<W: Work>(work: W) -> W::Output {
+        #[inline(never)]
         #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
         fn with_instructions<W: Work>(work: W) -> W::Output {
             work.run::<Eight256>()

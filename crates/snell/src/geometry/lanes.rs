@@ -313,6 +313,25 @@ impl Geometry {
     ) {
         let ray = LaneRay::<L>::load(origin, direction, at);
         let t = L::load(&hits.t, at);
+        // Neighbouring rays most often meet the same thing.
+        let first = hits.primitive[at + met.lowest()];
+        let is_same = met.lanes().all(|lane| hits.primitive[at + lane] == first);
+        let primitive = &self.world.primitives[first as usize];
+        if is_same && let Primitive::Sphere(_) | Primitive::Plane(_) = primitive {
+            let (material, object_space) = self.plain_attributes(first);
+            for lane in at..at + L::COUNT {
+                surfaces.whole[lane] = None;
+                surfaces.solid[lane] = SolidId(u64::from(first) << 32 | u64::from(NONE));
+                surfaces.material[lane] = material;
+            }
+            surfaces.unplaced = if object_space == NONE { met } else { Bits::NONE };
+            match primitive {
+                Primitive::Sphere(sphere) => surfaces.put_spheres(at, met, &LaneSpheres::from(sphere), &ray, t),
+                Primitive::Plane(plane) => surfaces.put_planes(at, met, &LanePlanes::from(plane), &ray, t),
+                _ => {}
+            }
+            return;
+        }
         let (mut spheres, mut planes) = (Bits::NONE, Bits::NONE);
         let (mut place, mut normal, mut radius) = ([[0.0; WIDTH]; 3], [[0.0; WIDTH]; 3], [1.0; WIDTH]);
         let mut unplaced = 0;
@@ -320,8 +339,8 @@ impl Geometry {
             let index = hits.primitive[at + lane];
             surfaces.whole[at + lane] = None;
             surfaces.solid[at + lane] = SolidId(u64::from(index) << 32 | u64::from(NONE));
-            let Attributes { material: own, object_space, .. } = self.world.attributes[index as usize];
-            surfaces.material[at + lane] = if own == NONE { self.default_material } else { own };
+            let (material, object_space) = self.plain_attributes(index);
+            surfaces.material[at + lane] = material;
             unplaced |= u8::from(object_space == NONE) << lane;
             match &self.world.primitives[index as usize] {
                 Primitive::Sphere(sphere) => {
@@ -344,15 +363,20 @@ impl Geometry {
         }
         surfaces.unplaced = Bits(unplaced) & (spheres | planes);
         if spheres.any() {
-            let lanes = LaneSpheres::<L> { center: LaneVector::load(&place, at), radius: L::load(&radius, at) };
-            let (point, normal, error) = lanes.surface(&ray, t);
-            surfaces.put(at, spheres, point, normal, error);
+            let lanes = LaneSpheres { center: LaneVector::load(&place, at), radius: L::load(&radius, at) };
+            surfaces.put_spheres(at, spheres, &lanes, &ray, t);
         }
         if planes.any() {
-            let lanes = LanePlanes::<L> { point: LaneVector::load(&place, at), normal: LaneVector::load(&normal, at) };
-            let (point, error) = lanes.surface(&ray, t);
-            surfaces.put(at, planes, point, lanes.normal, error);
+            let lanes = LanePlanes { point: LaneVector::load(&place, at), normal: LaneVector::load(&normal, at) };
+            surfaces.put_planes(at, planes, &lanes, &ray, t);
         }
+    }
+
+    /// The material of a sphere or plane of the world, and the space of its object.
+    #[inline(always)]
+    fn plain_attributes(&self, index: u32) -> (u32, u32) {
+        let Attributes { material, object_space, .. } = self.world.attributes[index as usize];
+        (if material == NONE { self.default_material } else { material }, object_space)
     }
 
     #[inline(never)]
@@ -415,6 +439,20 @@ impl Blockers {
 }
 
 impl SurfaceRows {
+    /// Puts in where rays meet spheres.
+    #[inline(always)]
+    fn put_spheres<L: Lanes>(&mut self, at: usize, lanes: Bits, spheres: &LaneSpheres<L>, ray: &LaneRay<L>, t: L) {
+        let (point, normal, error) = spheres.surface(ray, t);
+        self.put(at, lanes, point, normal, error);
+    }
+
+    /// Puts in where rays meet planes.
+    #[inline(always)]
+    fn put_planes<L: Lanes>(&mut self, at: usize, lanes: Bits, planes: &LanePlanes<L>, ray: &LaneRay<L>, t: L) {
+        let (point, error) = planes.surface(ray, t);
+        self.put(at, lanes, point, planes.normal, error);
+    }
+
     /// Puts in surfaces of some lanes, whose shading normal is the geometric one.
     #[inline(always)]
     fn put<L: Lanes>(&mut self, at: usize, lanes: Bits, point: LaneVector<L>, normal: LaneVector<L>, error: L) {

@@ -1,6 +1,6 @@
 //! Where an integrator's `shade` puts its results, and the rules that decide which rays are followed.
 
-use snell_math::lanes::{Bits, Floats, LaneColor, LaneVector, Lanes, WIDTH};
+use snell_math::lanes::{Bits, End, Floats, LaneColor, LaneVector, Lanes, WIDTH};
 use snell_math::{Ray, Rgb};
 use snell_scene::scene::Shadows;
 
@@ -9,7 +9,7 @@ use crate::observe::Observer;
 use crate::statistics::Statistics;
 use crate::task::{
     Band, Cut, MediumStack, MediumStacks, QuestionNotes, QuestionQueue, RayKind, RayNotes, RayQueue, RayRows, RayTask,
-    ShadowQuestion, Term, column, set_column,
+    SampleSums, ShadowQuestion, Term, column,
 };
 
 /// The rules of the recursion.
@@ -80,7 +80,7 @@ impl ShadedRays<'_> {
 /// What `shade` gives its results to: terms to the sample, questions to the lights, rays to the next generation.
 #[derive(Debug)]
 pub struct Sink<'a, O> {
-    pub(crate) sums: &'a mut [Rgb],
+    pub(crate) sums: &'a mut SampleSums,
     pub(crate) questions: &'a mut QuestionQueue,
     pub(crate) next: &'a mut [RayQueue; QUEUES],
     /// How many of those belong to each sample.
@@ -130,12 +130,14 @@ impl<O: Observer> Sink<'_, O> {
     /// Adds a term to the samples of some rays: `radiance` as seen along the rays, scaled here by their throughput.
     #[inline(always)]
     pub fn add<L: Lanes>(&mut self, rays: &ShadedRays<'_>, lanes: Bits, term: Term, radiance: LaneColor<L::Floats>) {
-        let mut shares = [[0.0; WIDTH]; 3];
-        (rays.throughput::<L>() * radiance).store(&mut shares, 0);
-        for lane in lanes.lanes() {
-            let share = Rgb::from(column(&shares, lane));
-            self.sums[rays.rows.sample[rays.at + lane] as usize] += share;
-            self.observer.term(rays.rows.notes[rays.at + lane].id, term, share);
+        let shares = rays.throughput::<L>() * radiance;
+        self.sums.add::<L, 1>(&rays.rows.sample, rays.at, [(lanes, shares)]);
+        if O::WATCHES {
+            let mut rows = [[0.0; WIDTH]; 3];
+            shares.store(&mut rows, 0);
+            for lane in lanes.lanes() {
+                self.observer.term(rays.rows.notes[rays.at + lane].id, term, Rgb::from(column(&rows, lane)));
+            }
         }
     }
 
@@ -170,25 +172,22 @@ impl<O: Observer> Sink<'_, O> {
         if asked.is_empty() {
             return;
         }
-        let (mut origin, mut direction, mut distance) = ([[0.0; WIDTH]; 3], [[0.0; WIDTH]; 3], [0.0; WIDTH]);
-        let mut shares = [[[0.0; WIDTH]; 3]; 2];
-        questions.origin.store(&mut origin, 0);
-        questions.direction.store(&mut direction, 0);
-        questions.distance.store(&mut distance, 0);
-        diffuse.store(&mut shares[0], 0);
-        specular.store(&mut shares[1], 0);
-        for lane in asked.lanes() {
-            let (rows, to) = self.questions.next_place();
-            let from = rays.at + lane;
-            set_column(&mut rows.origin, to, column(&origin, lane));
-            set_column(&mut rows.direction, to, column(&direction, lane));
-            rows.distance[to] = distance[lane];
-            set_column(&mut rows.shares[0], to, column(&shares[0], lane));
-            set_column(&mut rows.shares[1], to, column(&shares[1], lane));
-            rows.sample[to] = rays.rows.sample[from];
-            rows.media[to] = rays.rows.media[from];
-            let terms = [Term::Diffuse(questions.light), Term::Specular(questions.light)];
-            rows.notes[to] = QuestionNotes { terms, task: rays.rows.notes[from].id, extinction_scale: 1.0 };
+        let ([first, second], from) = self.questions.extend(asked.count() as usize);
+        let end = End { lanes: asked, from };
+        questions.origin.append(end, [&mut first.origin, &mut second.origin]);
+        questions.direction.append(end, [&mut first.direction, &mut second.direction]);
+        questions.distance.append(end, [&mut first.distance, &mut second.distance]);
+        let ([first_diffuse, first_specular], [second_diffuse, second_specular]) =
+            (&mut first.shares, &mut second.shares);
+        diffuse.append::<L>(end, [first_diffuse, second_diffuse]);
+        specular.append::<L>(end, [first_specular, second_specular]);
+        L::append_words(&rays.rows.sample, rays.at, end, [&mut first.sample, &mut second.sample]);
+        let media = [&mut first.media, &mut second.media].map(bytemuck::cast_mut);
+        L::append_words(bytemuck::cast_ref(&rays.rows.media), rays.at, end, media);
+        let terms = [Term::Diffuse(questions.light), Term::Specular(questions.light)];
+        for (lane, number, place) in end.places() {
+            let notes = if number == 0 { &mut first.notes } else { &mut second.notes };
+            notes[place] = QuestionNotes { terms, task: rays.rows.notes[rays.at + lane].id, extinction_scale: 1.0 };
         }
     }
 
@@ -246,29 +245,54 @@ impl<O: Observer> Sink<'_, O> {
             RayKind::Refracted => self.statistics.refracted_rays += count,
             RayKind::Camera => self.statistics.camera_rays += count,
         }
-        let (mut origins, mut directions) = ([[0.0; WIDTH]; 3], [[0.0; WIDTH]; 3]);
-        let mut weights = [[0.0; WIDTH]; 3];
-        spawn.origin.store(&mut origins, 0);
-        spawn.direction.store(&mut directions, 0);
-        spawn.throughput.store(&mut weights, 0);
+        let mut ids = [0; WIDTH];
+        let mut queues = [0; WIDTH];
         for lane in followed.lanes() {
-            let from = parents.at + lane;
-            let notes = &parents.rows.notes[from];
-            self.statistics.max_depth = self.statistics.max_depth.max(u32::from(notes.depth) + 1);
-            let (id, parent) = (self.take_id(), notes.id);
-            let (band, depth) = (notes.band.or(spawn.band), notes.depth + 1);
-            let notes = RayNotes { id, parent, depth, passes: 0, kind: spawn.kind, band, split: notes.split };
-            let sample = parents.rows.sample[from];
-            let (rows, to) = self.place_of(sample);
-            set_column(&mut rows.origin, to, column(&origins, lane));
-            set_column(&mut rows.direction, to, column(&directions, lane));
-            set_column(&mut rows.throughput, to, column(&weights, lane));
-            rows.sample[to] = sample;
-            rows.media[to] = spawn.media.map_or(parents.rows.media[from], |media| media[lane]);
-            rows.notes[to] = notes;
+            ids[lane] = self.take_id();
+            queues[lane] = self.take_queue(parents.rows.sample[parents.at + lane]);
+        }
+        let mut rest = followed;
+        while rest.any() {
+            // Most often all of them.
+            let queue = queues[rest.lowest()];
+            let mut same = Bits::NONE;
+            for lane in rest.lanes() {
+                same |= Bits(u8::from(queues[lane] == queue) << lane);
+            }
+            rest = rest.without(same);
+            self.spawn_into(queue, parents, same, spawn, &ids);
+        }
+    }
+
+    /// As above, those that go to one queue, with their numbers.
+    #[inline(always)]
+    fn spawn_into<L: Lanes>(
+        &mut self,
+        queue: usize,
+        parents: &ShadedRays<'_>,
+        lanes: Bits,
+        spawn: &Spawn<'_, L>,
+        ids: &[u32; WIDTH],
+    ) {
+        let ([first, second], from) = self.next[queue].extend(lanes.count() as usize);
+        let end = End { lanes, from };
+        spawn.origin.append(end, [&mut first.origin, &mut second.origin]);
+        spawn.direction.append(end, [&mut first.direction, &mut second.direction]);
+        spawn.throughput.append::<L>(end, [&mut first.throughput, &mut second.throughput]);
+        L::append_words(&parents.rows.sample, parents.at, end, [&mut first.sample, &mut second.sample]);
+        let media = [&mut first.media, &mut second.media].map(bytemuck::cast_mut);
+        match spawn.media {
+            Some(own) => L::append_words(bytemuck::cast_ref(own), 0, end, media),
+            None => L::append_words(bytemuck::cast_ref(&parents.rows.media), parents.at, end, media),
+        }
+        for (lane, number, place) in end.places() {
+            let RayNotes { id: parent, split, depth, band, .. } = parents.rows.notes[parents.at + lane];
+            let (band, depth) = (band.or(spawn.band), depth + 1);
+            self.statistics.max_depth = self.statistics.max_depth.max(u32::from(depth));
+            let rows = if number == 0 { &mut *first } else { &mut *second };
+            rows.notes[place] = RayNotes { id: ids[lane], parent, depth, passes: 0, kind: spawn.kind, band, split };
             if O::WATCHES {
-                let task = rows.task(to);
-                self.observer.ray(&task);
+                self.observer.ray(&rows.task(place));
             }
         }
     }
@@ -282,8 +306,8 @@ impl<O: Observer> Sink<'_, O> {
         }
         let id = self.take_id();
         let task = RayTask { ray, media, id, parent: task.id, passes: task.passes + 1, ..*task };
-        let (rows, lane) = self.place_of(task.sample);
-        rows.set(lane, &task);
+        let queue = self.take_queue(task.sample);
+        self.next[queue].push(&task);
         self.observer.ray(&task);
     }
 
@@ -294,13 +318,13 @@ impl<O: Observer> Sink<'_, O> {
         id
     }
 
-    /// A place in the queue that the next ray of a sample waits in.
+    /// The queue that the next ray of a sample waits in.
     #[inline(always)]
-    fn place_of(&mut self, sample: u32) -> (&mut RayRows, usize) {
+    fn take_queue(&mut self, sample: u32) -> usize {
         let before = &mut self.spawned[sample as usize];
         let queue = (*before as usize).min(QUEUES - 1);
         *before += 1;
-        self.next[queue].next_place()
+        queue
     }
 
     fn cut(&mut self, parent: u32, why: Cut, weight: Rgb) {

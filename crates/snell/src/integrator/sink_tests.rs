@@ -9,7 +9,7 @@ use snell_scene::scene::Shadows;
 use super::{QUEUES, Rules, ShadedRays, Sink, Spawn};
 use crate::observe::RayTree;
 use crate::statistics::Statistics;
-use crate::task::{Cut, MediumStack, MediumStacks, QuestionQueue, RayKind, RayQueue, RayTask, Term};
+use crate::task::{Cut, MediumStack, MediumStacks, QuestionQueue, RayKind, RayQueue, RayTask, SampleSums, Term};
 
 const RULES: Rules = Rules { depth: 3, min_weight: 0.01, weightless_rays: false, shadows: Shadows::Filtered };
 
@@ -35,7 +35,8 @@ fn with(
     parent: &RayTask,
     call: impl FnOnce(&mut Sink<'_, RayTree>, &ShadedRays<'_>),
 ) -> (Vec<RayTask>, RayTree, Statistics, Rgb) {
-    let (mut sums, mut questions) = ([Rgb::BLACK], QuestionQueue::default());
+    let (mut sums, mut questions) = (SampleSums::default(), QuestionQueue::default());
+    sums.reset(1);
     let mut next: [RayQueue; QUEUES] = from_fn(|_| RayQueue::default());
     let mut parents = RayQueue::default();
     parents.push(parent);
@@ -58,7 +59,7 @@ fn with(
     call(&mut sink, &ShadedRays { rows: &rows, at: 0, throughput: &rows.throughput });
     let tasks =
         next.iter().flat_map(|queue| queue.rows().flat_map(|(rows, lanes)| lanes.lanes().map(|l| rows.task(l))));
-    (tasks.collect(), tree, statistics, sums[0])
+    (tasks.collect(), tree, statistics, sums.iter().next().expect("one sample"))
 }
 
 /// Spawns an upward ray with a weight.

@@ -160,11 +160,24 @@ impl Samples {
     }
 }
 
+/// A pixel of the picture; (0, 0) is the one at the top left.
+#[derive(Clone, Copy)]
+struct Pixel {
+    x: u32,
+    y: u32,
+}
+
+impl Pixel {
+    /// Its place in rows from the top.
+    fn place(self, width: u32) -> usize {
+        self.y as usize * width as usize + self.x as usize
+    }
+}
+
 /// The camera rays of some pixels, sample by sample in each.
 struct TileRays<'a> {
     camera: &'a Camera,
-    width: u32,
-    pixels: &'a [u32],
+    pixels: &'a [Pixel],
     samples: &'a Samples,
 }
 
@@ -180,8 +193,7 @@ impl CameraRays for TileRays<'_> {
         let (mut pixel, mut sample) = (first / per_pixel, first % per_pixel);
         for lane in 0..L::COUNT {
             // Beyond the last one it is the last one again.
-            let place = self.pixels[pixel.min(self.pixels.len() - 1)];
-            let (x, y) = (place % self.width, place / self.width);
+            let Pixel { x, y } = self.pixels[pixel.min(self.pixels.len() - 1)];
             let [dx, dy] = self.samples.places[sample];
             (xs[lane], ys[lane]) = (f64::from(x) + dx, f64::from(y) + dy);
             split[at + lane] = split_place([x, y], self.samples.first + sample as u32);
@@ -214,8 +226,7 @@ struct Gathered {
 /// A pixel that needs more samples than those of the first pass.
 #[derive(Clone, Copy)]
 struct Refined {
-    /// Its place in rows from the top.
-    pixel: u32,
+    pixel: Pixel,
     sum: PixelSum,
     /// Of all its samples.
     range: Range,
@@ -225,8 +236,7 @@ struct Refined {
 #[derive(Default)]
 struct Worker {
     scratch: Scratch,
-    /// The places of pixels in rows from the top.
-    pixels: Vec<u32>,
+    pixels: Vec<Pixel>,
     means: Vec<Rgb>,
     first_hits: Vec<FirstHit>,
 }
@@ -267,10 +277,9 @@ impl<I: Integrator> Job<'_, I> {
         progress: &dyn Progress,
     ) {
         let per_pixel = samples.places.len();
-        let width = self.settings.width;
         let Worker { scratch, pixels, means, first_hits } = worker;
         pixels.clear();
-        pixels.extend(tile.pixels(width));
+        pixels.extend(tile.pixels());
         means.clear();
         first_hits.clear();
         let mut statistics = Statistics::default();
@@ -279,7 +288,7 @@ impl<I: Integrator> Job<'_, I> {
             if progress.is_cancelled() {
                 break;
             }
-            let rays = TileRays { camera: self.camera, width, pixels, samples };
+            let rays = TileRays { camera: self.camera, pixels, samples };
             let mut watch = |number: usize, ray: &Ray, hit: &mut Option<Hit>| {
                 self.cut_far(ray, hit);
                 if self.settings.layers && number.is_multiple_of(per_pixel) {
@@ -309,7 +318,7 @@ impl<I: Integrator> Job<'_, I> {
         tile.put(means, &mut gathered.image);
         if let Some(all) = &mut gathered.first_hits {
             for (&pixel, first) in pixels.iter().zip(first_hits.drain(..)) {
-                all.set(pixel as usize, first);
+                all.set(pixel.place(self.settings.width), first);
             }
         }
         drop(gathered);
@@ -328,11 +337,13 @@ impl<I: Integrator> Job<'_, I> {
         let display = Display::new(self.settings);
         let unsettled = adaptive::unsettled(image, &display);
         // In the order of tiles, so that neighbours are traced together.
-        let pixels = tiles.iter().flat_map(|tile| tile.pixels(self.settings.width));
-        let mut refined: Vec<Refined> = pixels
-            .filter(|&pixel| unsettled[pixel as usize])
+        let width = self.settings.width;
+        let mut refined: Vec<Refined> = tiles
+            .iter()
+            .flat_map(Tile::pixels)
+            .filter(|pixel| unsettled[pixel.place(width)])
             .map(|pixel| {
-                let mean = image.pixels()[pixel as usize];
+                let mean = image.pixels()[pixel.place(width)];
                 Refined { pixel, sum: PixelSum::of_one(mean), range: display.range(&[mean]) }
             })
             .collect();
@@ -351,7 +362,7 @@ impl<I: Integrator> Job<'_, I> {
                 });
             statistics.merge(&counted);
             for Refined { pixel, sum, .. } in &refined {
-                image.pixels_mut()[*pixel as usize] = sum.mean();
+                image.pixels_mut()[pixel.place(width)] = sum.mean();
             }
             if progress.is_cancelled() {
                 return;
@@ -376,7 +387,7 @@ impl<I: Integrator> Job<'_, I> {
         let Worker { scratch, pixels, .. } = worker;
         pixels.clear();
         pixels.extend(portion.iter().map(|refined| refined.pixel));
-        let rays = TileRays { camera: self.camera, width: self.settings.width, pixels, samples };
+        let rays = TileRays { camera: self.camera, pixels, samples };
         let mut watch = |_: usize, ray: &Ray, hit: &mut Option<Hit>| self.cut_far(ray, hit);
         let watch: Option<&mut FirstHitWatch<'_>> = if self.has_far_plane() { Some(&mut watch) } else { None };
         let colors = self.tracer().trace(&rays, scratch, &mut statistics, &mut NoObserver, watch);
@@ -438,10 +449,10 @@ struct Tile {
 }
 
 impl Tile {
-    /// The places of its pixels in rows of the picture from the top.
-    fn pixels(&self, width: u32) -> impl Iterator<Item = u32> {
+    /// Its pixels, row by row from the top.
+    fn pixels(&self) -> impl Iterator<Item = Pixel> {
         let columns = self.columns.clone();
-        self.rows.clone().flat_map(move |y| columns.clone().map(move |x| y * width + x))
+        self.rows.clone().flat_map(move |y| columns.clone().map(move |x| Pixel { x, y }))
     }
 
     /// Puts its colours, or as many of the first as there are, into the picture.

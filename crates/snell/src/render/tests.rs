@@ -64,9 +64,9 @@ fn tiles_cover_every_pixel_once() {
         let mut covered = vec![0; (width * height) as usize];
         let mut picture = Image::filled(width, height, Rgb::BLACK);
         for tile in tiles {
-            let pixels: Vec<u32> = tile.pixels(width).collect();
+            let pixels: Vec<usize> = tile.pixels().map(|pixel| pixel.place(width)).collect();
             assert!(!pixels.is_empty() && pixels.len() as u64 <= u64::from(tile_size.max(1)).pow(2));
-            pixels.iter().for_each(|&pixel| covered[pixel as usize] += 1);
+            pixels.iter().for_each(|&pixel| covered[pixel] += 1);
             let colors: Vec<Rgb> = pixels.iter().map(|&pixel| Rgb::gray(pixel as f32 + 1.0)).collect();
             tile.put(&colors, &mut picture);
         }

@@ -10,7 +10,8 @@
 use crate::interaction::SolidId;
 
 /// The bodies around a point: a place in [`MediumStacks`]. The default is the empty stack, outside of everything.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(transparent)]
 pub struct MediumStack(u32);
 
 /// One body of a stack.

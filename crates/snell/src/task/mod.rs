@@ -2,11 +2,13 @@
 
 mod media;
 mod rows;
+mod sums;
 
 use snell_math::{Ray, Rgb};
 
 pub use media::{Crossing, Inside, MediumStack, MediumStacks};
 pub use rows::{QuestionNotes, QuestionQueue, QuestionRows, Queue, RayNotes, RayQueue, RayRows, column, set_column};
+pub use sums::SampleSums;
 
 /// A ray to be traced, with its weight to a sample of a pixel. "Rays are tasks": the lecture's recursion is a list of these.
 #[derive(Clone, Copy, Debug)]

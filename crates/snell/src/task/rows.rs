@@ -250,6 +250,18 @@ impl<R: Rows> Queue<R> {
         (&mut self.rows[row], lane)
     }
 
+    /// Makes place for up to eight at the end: the rows where the first of them goes, at the place that is told, and those that follow.
+    #[inline(always)]
+    pub fn extend(&mut self, count: usize) -> ([&mut R; 2], usize) {
+        let (row, lane) = (self.count / WIDTH, self.count % WIDTH);
+        while self.rows.len() < row + 2 {
+            self.grow();
+        }
+        self.count += count;
+        let (first, rest) = self.rows[row..].split_at_mut(1);
+        ([&mut first[0], &mut rest[0]], lane)
+    }
+
     #[cold]
     fn grow(&mut self) {
         self.rows.push(R::NOTHING);

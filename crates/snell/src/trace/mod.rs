@@ -26,7 +26,9 @@ use crate::integrator::{Integrator, QUEUES, Rules, Sink};
 use crate::interaction::SurfaceRows;
 use crate::observe::Observer;
 use crate::statistics::Statistics;
-use crate::task::{MediumStack, MediumStacks, QuestionQueue, RayKind, RayNotes, RayQueue, RayRows, column, set_column};
+use crate::task::{
+    MediumStack, MediumStacks, QuestionQueue, RayKind, RayNotes, RayQueue, RayRows, SampleSums, column, set_column,
+};
 
 /// The queues and buffers of one worker, reused from tile to tile so that rays cost no allocation.
 #[derive(Debug, Default)]
@@ -37,7 +39,9 @@ pub struct Scratch {
     hits: Vec<HitRows>,
     surfaces: SurfaceRows,
     questions: QuestionQueue,
-    sums: Vec<Rgb>,
+    sums: SampleSums,
+    /// What the sums came to.
+    colors: Vec<Rgb>,
     spawned: Vec<u32>,
     media: MediumStacks,
     shadow: shadow::ShadowScratch,
@@ -74,8 +78,7 @@ impl<I: Integrator> Tracer<'_, I> {
         let count = camera_rays.count();
         scratch.current[0].fill(count);
         scratch.media.clear();
-        scratch.sums.clear();
-        scratch.sums.resize(count, Rgb::BLACK);
+        scratch.sums.reset(count);
         statistics.camera_rays += count as u64;
         statistics.max_depth = statistics.max_depth.max(u32::from(count > 0));
         let next_id = count as u32;
@@ -87,7 +90,10 @@ impl<I: Integrator> Tracer<'_, I> {
         } else {
             dispatch(self.instructions, whole);
         }
-        &scratch.sums
+        let Scratch { sums, colors, .. } = scratch;
+        colors.clear();
+        colors.extend(sums.iter());
+        colors
     }
 }
 
@@ -202,7 +208,7 @@ impl<I: Integrator, O: Observer> Generations<'_, '_, I, O> {
         next.iter_mut().for_each(RayQueue::clear);
         questions.clear();
         spawned.clear();
-        spawned.resize(sums.len(), 0);
+        spawned.resize(sums.count(), 0);
         let (statistics, observer) = (&mut *self.statistics, &mut *self.observer);
         let next_id = &mut self.next_id;
         let mut sink = Sink { sums, questions, next, spawned, media, statistics, observer, rules, next_id };

@@ -15,7 +15,7 @@ use crate::interaction::{LaneSurface, SurfaceRows};
 use crate::observe::Observer;
 use crate::optics::{self, fresnel_dielectric_lanes};
 use crate::statistics::Statistics;
-use crate::task::{Inside, MediumStack, MediumStacks, QuestionRows, column, set_column};
+use crate::task::{Inside, MediumStack, MediumStacks, QuestionRows, SampleSums, column, set_column};
 
 /// Where the hits of shadow rays are gathered.
 #[derive(Debug)]
@@ -61,7 +61,7 @@ pub fn answer<L: Lanes, O: Observer>(
     at: usize,
     active: Bits,
     scratch: &mut ShadowScratch,
-    sums: &mut [Rgb],
+    sums: &mut SampleSums,
     statistics: &mut Statistics,
     observer: &mut O,
 ) {
@@ -81,30 +81,28 @@ pub fn answer<L: Lanes, O: Observer>(
             }
         }
     }
-    let (mut arriving, mut adding) = ([[[0.0; WIDTH]; 3]; 2], [Bits::NONE; 2]);
-    for term in 0..2 {
-        let share = LaneColor::<L::Floats>::load(&rows.shares[term], at);
-        (share * transmitted).store(&mut arriving[term], 0);
-        adding[term] = L::all().without(share.is_black());
-    }
     let open = active.without(blocked | transmitted.is_black());
-    for lane in active.lanes() {
-        if O::WATCHES {
-            let is_blocked = blocked.has(lane);
-            let mut transmittance = [[0.0; WIDTH]; 3];
-            transmitted.store(&mut transmittance, 0);
-            let transmittance = if is_blocked { Rgb::BLACK } else { Rgb::from(column(&transmittance, lane)) };
+    if O::WATCHES {
+        let mut shares = [[0.0; WIDTH]; 3];
+        transmitted.store(&mut shares, 0);
+        for lane in active.lanes() {
+            let transmittance = if blocked.has(lane) { Rgb::BLACK } else { Rgb::from(column(&shares, lane)) };
             observer.shadow(&rows.question(at + lane), transmittance);
         }
-        if !open.has(lane) {
-            continue;
-        }
-        let notes = &rows.notes[at + lane];
-        for ((arriving, adding), term) in arriving.iter().zip(adding).zip(notes.terms) {
-            if adding.has(lane) {
-                let share = Rgb::from(column(arriving, lane));
-                sums[rows.sample[at + lane] as usize] += share;
-                observer.term(notes.task, term, share);
+    }
+    let (first, second) = (LaneColor::load(&rows.shares[0], at), LaneColor::load(&rows.shares[1], at));
+    let terms: [(Bits, LaneColor<L::Floats>); 2] = [
+        (open.without(first.is_black()), first * transmitted),
+        (open.without(second.is_black()), second * transmitted),
+    ];
+    sums.add::<L, 2>(&rows.sample, at, terms);
+    if O::WATCHES {
+        for (number, (adding, arriving)) in terms.iter().enumerate() {
+            let mut shares = [[0.0; WIDTH]; 3];
+            arriving.store(&mut shares, 0);
+            for lane in adding.lanes() {
+                let notes = &rows.notes[at + lane];
+                observer.term(notes.task, notes.terms[number], Rgb::from(column(&shares, lane)));
             }
         }
     }
