@@ -3,7 +3,7 @@
 //! "Different" is judged as the viewer will see it, after exposure and tone and in the sRGB encoding, whose steps are about
 //! equally visible. A pixel is unsettled after the first pass where the samples in it and its eight neighbours differ by more
 //! than a threshold in any component, and after later ones where its own do: then its own samples tell better, and a neighbour's
-//! edge is not its own.
+//! edge is not its own. Of an edge, n well-spread samples give a mean that is wrong by about an n-th of their range, so that is compared.
 
 use rayon::prelude::*;
 use snell_image::Image;
@@ -13,7 +13,8 @@ use snell_math::Rgb;
 
 use super::settings::RenderSettings;
 
-/// The least difference between display values, in [0, 1], that calls for more samples: about eight steps of 255.
+/// The least error in display values, in [0, 1], that calls for more samples: about eight steps of 255. With more, print that falls
+/// between the first samples goes missing.
 const THRESHOLD: f32 = 0.03;
 /// Rows of a picture that are judged together.
 const ROWS: usize = 16;
@@ -37,11 +38,12 @@ pub struct Range {
 }
 
 impl Display {
-    pub fn new(settings: &RenderSettings) -> Self {
+    /// For pixels of so many samples.
+    pub fn new(settings: &RenderSettings, samples: u32) -> Self {
         Self {
             tone: settings.tone_curve(),
             exposure: exposure_scale(settings.exposure),
-            threshold: EncodedDifference::new(THRESHOLD),
+            threshold: EncodedDifference::new(THRESHOLD * samples as f32),
         }
     }
 

@@ -334,7 +334,7 @@ impl<I: Integrator> Job<'_, I> {
         statistics: &mut Statistics,
         progress: &dyn Progress,
     ) {
-        let display = Display::new(self.settings);
+        let display = Display::new(self.settings, 1);
         let unsettled = adaptive::unsettled(image, &display);
         // In the order of tiles, so that neighbours are traced together.
         let width = self.settings.width;
@@ -367,6 +367,7 @@ impl<I: Integrator> Job<'_, I> {
             if progress.is_cancelled() {
                 return;
             }
+            let display = Display::new(self.settings, samples.first + samples.places.len() as u32);
             refined.retain(|pixel| display.is_wide(&pixel.range));
         }
     }

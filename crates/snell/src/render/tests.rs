@@ -110,7 +110,7 @@ fn what_is_different_is_judged_as_it_is_shown() {
     let settled = |colors: [f32; 3], tone: Tone, exposure: f32| {
         let scene = ball();
         let settings = RenderSettings { tone, exposure, ..settings(&scene, 3, 1) };
-        let display = Display::new(&settings);
+        let display = Display::new(&settings, 1);
         let picture = Image::from_fn(3, 1, |x, _| Rgb::gray(colors[x as usize]));
         unsettled(&picture, &display).into_iter().map(|unsettled| !unsettled).collect::<Vec<_>>()
     };
@@ -124,19 +124,23 @@ fn what_is_different_is_judged_as_it_is_shown() {
     assert_eq!(settled([1.0, 1.0, 3.0], Tone::Reinhard, 0.0), [true, false, false]);
     // Later a pixel's own samples count and not its neighbours'.
     let scene = ball();
-    let display = Display::new(&settings(&scene, 2, 1));
-    let own = |samples: [f32; 2]| display.is_wide(&display.range(&samples.map(Rgb::gray)));
-    assert_eq!([own([0.1, 0.9]), own([0.9, 0.9])], [true, false]);
+    let own = |count: u32, samples: [f32; 2]| {
+        let display = Display::new(&settings(&scene, 2, 1), count);
+        display.is_wide(&display.range(&samples.map(Rgb::gray)))
+    };
+    assert_eq!([own(4, [0.1, 0.9]), own(4, [0.9, 0.9])], [true, false]);
+    // The more there are, the less it says that two of them differ.
+    assert_eq!([own(1, [0.1, 0.18]), own(4, [0.1, 0.18])], [true, false]);
 }
 
 /// Against the definition: all nine samples of each neighbourhood, every pair of them.
 #[test]
 fn neighbours_are_those_of_all_sides() {
     let scene = ball();
-    let display = Display::new(&settings(&scene, 1, 1));
+    let display = Display::new(&settings(&scene, 1, 1), 1);
     let mut rng = TestRng::new(5);
     for (width, height) in [(1, 1), (1, 40), (40, 1), (7, 33), (20, 16), (3, 17)] {
-        let mut sample = || if rng.below(9) == 0 { 0.5 + 0.06 * rng.unit_f32() } else { 0.5 };
+        let mut sample = || if rng.below(9) == 0 { 0.5 + 0.16 * rng.unit_f32() } else { 0.5 };
         let picture = Image::from_fn(width, height, |_, _| Rgb::new(sample(), 0.5, sample()));
         let expected: Vec<bool> = (0..height as i64)
             .flat_map(|y| (0..width as i64).map(move |x| (x, y)))
