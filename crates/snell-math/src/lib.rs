@@ -16,6 +16,7 @@ pub mod lanes;
 pub mod portable;
 pub mod ray;
 pub mod roots;
+pub mod sampler;
 pub mod sampling;
 pub mod spectrum;
 pub mod transform;
