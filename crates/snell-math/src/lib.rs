@@ -21,6 +21,7 @@ pub mod sampling;
 pub mod spectrum;
 pub mod transform;
 pub mod vector;
+pub mod warp;
 
 pub use bounds::Bounds3;
 pub use color::Rgb;
