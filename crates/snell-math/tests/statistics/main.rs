@@ -1,6 +1,7 @@
-//! Statistical tests: random numbers, and sampling routines against the densities beside them. Every test has a twin with a
+//! Statistical tests: random numbers, spectra, and sampling routines against the densities beside them. Every test has a twin with a
 //! planted defect. In one program, since tests of this kind share the chi-square test of `snell_testkit`.
 
 mod directions;
 mod sampler;
+mod spectra;
 mod warp;
