@@ -13,6 +13,7 @@ pub mod color;
 pub mod dispersion;
 pub mod homogeneous;
 pub mod lanes;
+pub mod microfacet;
 pub mod portable;
 pub mod ray;
 pub mod roots;

@@ -2,6 +2,7 @@
 //! planted defect. In one program, since tests of this kind share the chi-square test of `snell_testkit`.
 
 mod directions;
+mod microfacet;
 mod sampler;
 mod spectra;
 mod warp;

@@ -11,7 +11,7 @@ use super::assert_counts;
 use crate::TestRng;
 
 /// How often a cell is cut into quarters at most, to integrate over it.
-const DEEPEST: u32 = 6;
+const DEEPEST: u32 = 7;
 
 /// A grid of cells over a rectangle, and how many samples are drawn into it.
 #[derive(Clone, Copy, Debug)]
@@ -68,7 +68,7 @@ impl Histogram {
     /// integrates to less than one by that share. A sample outside the rectangle counts as `None`.
     ///
     /// # Panics
-    /// Where the density integrates to more than one (by 0.0005), or the counts would come by chance less often than the
+    /// Where the density integrates to more than one (by 0.002, since jumps of a density are integrated no better), or the counts would come by chance less often than the
     /// significance says.
     ///
     /// ```
@@ -94,10 +94,10 @@ impl Histogram {
         }
         let mut expected: Vec<f64> = (0..count).map(|cell| self.integral(cell, &density)).collect();
         let total: f64 = expected.iter().sum();
-        assert!(total <= 1.0 + 5e-4, "{what}: the density integrates to {total}");
+        assert!(total <= 1.0 + 2e-3, "{what}: the density integrates to {total}");
         // Less than a thousandth of one sample in all is the integrals' own error.
         let rest = 1.0 - total;
-        let without = if rest.abs() < 5e-4 && observed[count] == 0 { 0.0 } else { rest.max(0.0) };
+        let without = if rest.abs() < 2e-3 && observed[count] == 0 { 0.0 } else { rest.max(0.0) };
         let scale = self.samples as f64 / (total + without);
         expected.push(without);
         expected.iter_mut().for_each(|share| *share *= scale);
