@@ -97,6 +97,34 @@ fn solid_angles_of_rectangles_are_exact_and_go_over_smoothly() {
 }
 
 #[test]
+fn any_view_of_a_rectangle_gives_places_in_it() {
+    let mut rng = TestRng::new(21);
+    let mut seen = 0;
+    for _ in 0..3000 {
+        // Sizes and distances of all orders, also from nearly in the plane, and numbers at the ends.
+        let mut size = || snell_math::portable::pow(10.0, rng.range(-3.0, 3.0));
+        let (width, height, far, aside) = (size(), size(), size(), size());
+        let flat = rng.coin();
+        let from = Point3::new(aside * rng.range(-1.0, 1.0), far, if flat { 1e-6 * far } else { aside });
+        let corner = Point3::new(rng.range(-1.0, 1.0), rng.range(-1.0, 1.0), 0.0);
+        let (edge_x, edge_y) = (Vector3::new(width, 0.0, 0.0), Vector3::new(0.0, height, 0.0));
+        let Some(rectangle) = SphericalRectangle::new(from, corner, edge_x, edge_y) else { continue };
+        seen += 1;
+        assert!(rectangle.solid_angle() > 0.0 && rectangle.solid_angle() <= 2.0 * std::f64::consts::PI + 1e-9);
+        for u in [[0.0, 0.0], [0.0, 0.999_999_999], [0.999_999_999, 0.0], [0.5, 0.5], [rng.unit(), rng.unit()]] {
+            let place = rectangle.sample(u);
+            let off = place - corner;
+            let slack = 1e-9 * (1.0 + width + height + from.max_abs());
+            let inside = (-slack..=width + slack).contains(&off.x()) && (-slack..=height + slack).contains(&off.y());
+            assert!(inside && off.z().abs() <= slack, "{rectangle:?} {u:?}: {place:?}");
+            let density = rectangle.density(place);
+            assert!(density > 0.0 && density.is_finite(), "{rectangle:?} {u:?}: {density}");
+        }
+    }
+    assert!(seen > 2500, "{seen}");
+}
+
+#[test]
 fn distances() {
     let grid = Histogram::over([[0.0, 6.0], [0.0, 1.0]]).with_cells([60, 2]).one_of(3);
     grid.assert("free paths", |[u, v]| Some([exponential(u, 0.8), v]), |[t, _]| exponential_density(t, 0.8));
