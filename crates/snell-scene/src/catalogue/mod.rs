@@ -10,7 +10,7 @@
 //!   more in Schott's catalogue, such as `BK7`, means the glass that took its place, which has N- before it.
 //!
 //! Schott's indices are relative to air, as its data sheets give them, and by wavelengths in air; the difference to vacuum, a
-//! share of 0.0003, is below what a picture shows. What Schott's glasses absorb is here too, and metals ([`metal`]) are. Names are
+//! share of 0.0003, is below what a picture shows. What Schott's glasses absorb is here too, and metals ([`metal()`]) are. Names are
 //! compared without regard to case, spaces, dashes and underscores. The tables are constants: nothing is parsed or built at
 //! start-up. Glasses that are not here come from files ([`read_glass_file`]).
 

@@ -1,6 +1,6 @@
 //! The tail of the chi-square distribution: the regularised upper incomplete gamma function Q(k / 2, x).
 //!
-//! Follows: NIST Digital Library of Mathematical Functions, https://dlmf.nist.gov, 8.11.4 (the power series of the lower
+//! Follows: NIST Digital Library of Mathematical Functions, <https://dlmf.nist.gov>, 8.11.4 (the power series of the lower
 //! function, for x < a + 1) and 8.9.2 (the continued fraction of the upper one, evaluated by Lentz's method).
 
 use snell_math::portable;

@@ -1,6 +1,6 @@
 //! Pages of the refractiveindex.info database: YAML of one plain form, of which only what is needed is read.
 //!
-//! Follows: the database's "Dispersion formulas" (https://refractiveindex.info/database/doc/Dispersion%20formulas.pdf); Polyanskiy,
+//! Follows: the database's "Dispersion formulas" (<https://refractiveindex.info/database/doc/Dispersion%20formulas.pdf>); Polyanskiy,
 //! Scientific Data 11, 94, 2024. Wavelengths are micrometres in vacuum, but for Schott's glasses, whose pages do not say that theirs
 //! are in air; indices then are relative to it.
 
