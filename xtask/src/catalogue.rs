@@ -1,14 +1,17 @@
-//! `cargo xtask catalogue DATABASE`: writes the table of measured materials in `snell-scene` anew.
+//! `cargo xtask catalogue DATABASE`: writes the tables of measured materials in `snell-scene` anew.
 //!
 //! DATABASE is a checkout of the refractiveindex.info database
-//! (<https://github.com/polyanskiy/refractiveindex.info-database>, CC0 1.0), the folder that holds `database/data`. Its
+//! (<https://github.com/polyanskiy/refractiveindex.info-database>, CC0 1.0), the folder that holds `database/data`, or a folder
+//! with the pages that are needed and the glasses in its folder `schott`. Its
 //! formula 1 is Sellmeier's with poles as wavelengths, its formula 2 with their squares; the table has squares.
 //! Wavelengths there are in micrometres, the ranges of the table in nanometres.
 
 use std::error::Error;
 use std::fmt::Write as _;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+mod absorption;
 
 use crate::Outcome;
 use crate::arguments::Arguments;
@@ -23,6 +26,8 @@ const SCHOTT: &str = "specs/schott/optical";
 /// A material with a page of its own.
 struct Material {
     file: &'static str,
+    /// Its name in a folder of pages alone.
+    page: &'static str,
     key: &'static str,
     aliases: &'static [&'static str],
     description: &'static str,
@@ -32,6 +37,7 @@ struct Material {
 const MATERIALS: [Material; 7] = [
     Material {
         file: "main/H2O/nk/Daimon-20.0C.yml",
+        page: "H2O-Daimon-20C.yml",
         key: "water-20C",
         aliases: &["water-dispersive"],
         description: "distilled water at 20 °C",
@@ -39,6 +45,7 @@ const MATERIALS: [Material; 7] = [
     },
     Material {
         file: "main/SiO2/nk/Malitson.yml",
+        page: "SiO2-Malitson.yml",
         key: "fused-silica",
         aliases: &["silica", "quartz-glass"],
         description: "fused silica (quartz glass) at 20 °C",
@@ -46,6 +53,7 @@ const MATERIALS: [Material; 7] = [
     },
     Material {
         file: "organic/(C5H8O2)n - poly(methyl methacrylate)/nk/Sultanova.yml",
+        page: "PMMA-Sultanova.yml",
         key: "PMMA",
         aliases: &["acrylic", "plexiglas", "plexiglass"],
         description: "acrylic glass, poly(methyl methacrylate), at 20 °C",
@@ -53,6 +61,7 @@ const MATERIALS: [Material; 7] = [
     },
     Material {
         file: "main/NaCl/nk/Li.yml",
+        page: "NaCl-Li.yml",
         key: "NaCl",
         aliases: &["rock-salt-dispersive", "salt-dispersive", "halite-dispersive", "sodium-chloride"],
         description: "rock salt, sodium chloride, at 24 °C",
@@ -60,6 +69,7 @@ const MATERIALS: [Material; 7] = [
     },
     Material {
         file: "main/Al2O3/nk/Malitson-o.yml",
+        page: "Al2O3-Malitson-o.yml",
         key: "sapphire-o",
         aliases: &["sapphire"],
         description: "synthetic sapphire, ordinary ray, at 20 °C",
@@ -67,6 +77,7 @@ const MATERIALS: [Material; 7] = [
     },
     Material {
         file: "other/mixed crystals/ZrO2-Y2O3/nk/Wood.yml",
+        page: "CubicZirconia-Wood.yml",
         key: "cubic-zirconia-dispersive",
         aliases: &["zirconia-dispersive"],
         description: "cubic zirconia with 12 mol % yttria at 25 °C",
@@ -74,6 +85,7 @@ const MATERIALS: [Material; 7] = [
     },
     Material {
         file: "main/C/nk/Peter.yml",
+        page: "C-Peter-diamond.yml",
         key: "diamond-dispersive",
         aliases: &[],
         description: "diamond at room temperature",
@@ -100,12 +112,11 @@ pub fn run(arguments: Arguments) -> Outcome {
 }
 
 fn write_table(database: &Path) -> Result<(), Box<dyn Error>> {
-    let data = database.join(DATA);
     let mut table = String::from(HEAD);
     table.push_str("/// Materials of one paper each.\n#[rustfmt::skip]\n");
     writeln!(table, "pub(super) static MATERIALS: [Entry; {}] = [", MATERIALS.len())?;
-    for Material { file, key, aliases, description, source } in &MATERIALS {
-        let formula = Formula::read(&data.join(file))?;
+    for Material { file, page, key, aliases, description, source } in &MATERIALS {
+        let formula = Formula::read(&page_of(database, file, page))?;
         writeln!(table, "    material({key:?}, &{aliases:?},")?;
         writeln!(table, "        {description:?},")?;
         writeln!(table, "        {source:?},")?;
@@ -117,10 +128,7 @@ fn write_table(database: &Path) -> Result<(), Box<dyn Error>> {
     }
     table.push_str("];\n\n");
 
-    let mut files =
-        fs::read_dir(data.join(SCHOTT))?.map(|entry| entry.map(|entry| entry.path())).collect::<Result<Vec<_>, _>>()?;
-    files.retain(|path| path.extension().is_some_and(|extension| extension == "yml"));
-    files.sort();
+    let files = glasses(database)?;
     table.push_str("/// Optical glasses of Schott.\n#[rustfmt::skip]\n");
     writeln!(table, "pub(super) static SCHOTT: [Entry; {}] = [", files.len())?;
     for file in &files {
@@ -139,7 +147,23 @@ fn write_table(database: &Path) -> Result<(), Box<dyn Error>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().ok_or("xtask has no parent folder")?;
     fs::write(root.join(TABLE), table)?;
     println!("{TABLE}: {} materials, {} glasses", MATERIALS.len(), files.len());
-    Ok(())
+    absorption::write_tables(root, database)
+}
+
+/// A page in a checkout of the database, or in a folder of pages.
+fn page_of(database: &Path, file: &str, page: &str) -> PathBuf {
+    let inside = database.join(DATA).join(file);
+    if inside.exists() { inside } else { database.join(page) }
+}
+
+/// The pages of Schott's glasses, by name.
+fn glasses(database: &Path) -> Result<Vec<PathBuf>, Box<dyn Error>> {
+    let folder = page_of(database, SCHOTT, "schott");
+    let mut files =
+        fs::read_dir(folder)?.map(|entry| entry.map(|entry| entry.path())).collect::<Result<Vec<_>, _>>()?;
+    files.retain(|path| path.extension().is_some_and(|extension| extension == "yml"));
+    files.sort();
+    Ok(files)
 }
 
 /// Sellmeier's formula as it goes into the table.

@@ -9,6 +9,7 @@ mod console;
 mod diagnostics;
 mod draw;
 mod failure;
+mod glass;
 mod interrupt;
 mod load;
 mod output;
@@ -49,6 +50,7 @@ fn run(command: Command, watch: Stopwatch) -> Result<u8, Failure> {
         Command::Render(arguments) => return render::run(&arguments, watch),
         Command::Draw(arguments) => return draw::run(&arguments, watch),
         Command::View(arguments) => return view::run(&arguments),
+        Command::Glass(arguments) => return glass::run(&arguments),
         Command::Check(arguments) => return check::run(&arguments),
         Command::Scenes(arguments) => return scenes::run(&arguments),
         Command::Schema => write_stdout(format!("{:#}\n", document::schema()).as_bytes())?,

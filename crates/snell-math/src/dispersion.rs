@@ -3,9 +3,15 @@
 //! The formulas are those of glass makers' data sheets and of the refractiveindex.info database (Polyanskiy,
 //! "Refractiveindex.info database of optical constants", Scientific Data 11, 94, 2024): its formula 1 is Sellmeier's
 //! with the poles given as wavelengths (square them), its formula 2 is Sellmeier's with the poles already squared.
-//! Vacuum wavelengths: nanometres at the door, micrometres inside the formulas. Indices have no unit.
+//! Wavelengths: nanometres at the door, micrometres inside the formulas. Indices have no unit.
 
-/// Wavelengths of the spectral lines at which glass is measured, in nanometres (ISO 7944 and the Schott data sheets).
+mod air;
+mod rational;
+
+pub use air::{air_index, air_wavelength, vacuum_wavelength};
+pub use rational::RationalTerm;
+
+/// Wavelengths of the spectral lines at which glass is measured, in air, in nanometres (ISO 7944 and the Schott data sheets).
 pub mod fraunhofer {
     /// D: the middle of the two yellow lines of sodium; the line of the classical index n_D.
     pub const SODIUM_D: f64 = 589.3;
@@ -19,6 +25,24 @@ pub mod fraunhofer {
     pub const MERCURY_G: f64 = 435.8343;
     /// e: green mercury.
     pub const MERCURY_E: f64 = 546.0740;
+    /// All lines of the data sheets from violet to infrared: name, wavelength in air in nanometres, and where the light is
+    /// from.
+    pub const LINES: [(&str, f64, &str); 14] = [
+        ("i", 365.0146, "ultraviolet mercury"),
+        ("h", 404.6561, "violet mercury"),
+        ("g", MERCURY_G, "blue mercury"),
+        ("F'", 479.9914, "blue cadmium"),
+        ("F", HYDROGEN_F, "blue hydrogen"),
+        ("e", MERCURY_E, "green mercury"),
+        ("d", HELIUM_D, "yellow helium"),
+        ("D", SODIUM_D, "yellow sodium, the middle of two"),
+        ("C'", 643.8469, "red cadmium"),
+        ("C", HYDROGEN_C, "red hydrogen"),
+        ("r", 706.5188, "red helium"),
+        ("A'", 768.2, "red potassium"),
+        ("s", 852.11, "infrared caesium"),
+        ("t", 1013.98, "infrared mercury"),
+    ];
 }
 
 /// The smallest index that [`Dispersion::index`] gives.
@@ -58,6 +82,15 @@ pub enum Dispersion {
         /// Pairs (bᵢ, cᵢ), cᵢ in square micrometres.
         terms: Vec<(f64, f64)>,
     },
+    /// A sum of terms which is n², or n itself.
+    Rational {
+        /// The sum is the square of the index.
+        is_squared: bool,
+        /// The terms, λ in micrometres.
+        terms: Vec<RationalTerm>,
+    },
+    /// Measured: pairs (λ, n) of ascending wavelengths in nanometres, joined by straight lines. Beyond the ends, the ends' indices.
+    Table(Vec<(f64, f64)>),
 }
 
 impl Dispersion {
@@ -92,6 +125,9 @@ impl Dispersion {
             Self::Constant(index) => *index,
             Self::Cauchy(coefficients) => coefficients.iter().rev().fold(0.0, |sum, c| sum / squared + c),
             Self::Sellmeier { constant, terms } => sellmeier_squared(*constant, terms, squared).max(0.0).sqrt(),
+            Self::Rational { is_squared: true, terms } => rational::sum(terms, squared).max(0.0).sqrt(),
+            Self::Rational { is_squared: false, terms } => rational::sum(terms, squared),
+            Self::Table(rows) => table_index(rows, wavelength_nm),
         };
         if index.is_nan() { MIN_INDEX } else { index.clamp(MIN_INDEX, MAX_INDEX) }
     }
@@ -102,6 +138,8 @@ impl Dispersion {
             Self::Constant(_) => false,
             Self::Cauchy(coefficients) => coefficients.iter().skip(1).any(|c| *c != 0.0),
             Self::Sellmeier { terms, .. } => terms.iter().any(|(b, c)| *b != 0.0 && *c != 0.0),
+            Self::Rational { terms, .. } => terms.iter().any(RationalTerm::is_dispersive),
+            Self::Table(rows) => rows.iter().any(|(_, index)| *index != rows[0].1),
         }
     }
 
@@ -118,18 +156,23 @@ impl Dispersion {
 /// enclose the d line.
 #[inline]
 fn sellmeier_squared(constant: f64, terms: &[(f64, f64)], squared: f64) -> f64 {
-    const D_SQUARED: f64 = fraunhofer::HELIUM_D * fraunhofer::HELIUM_D * 1e-6;
-    let (mut lowest, mut highest) = (0.0_f64, f64::INFINITY);
-    for &(strength, pole) in terms {
-        if strength != 0.0 && pole < D_SQUARED {
-            lowest = lowest.max(pole * (1.0 + POLE_MARGIN));
-        } else if strength != 0.0 {
-            highest = highest.min(pole * (1.0 - POLE_MARGIN));
-        }
-    }
-    let squared = squared.max(lowest).min(highest);
+    let poles = terms.iter().filter(|(strength, _)| *strength != 0.0).map(|(_, pole)| *pole);
+    let squared = rational::between_poles(squared, poles);
     let sum: f64 = terms.iter().filter(|(b, _)| *b != 0.0).map(|(b, c)| b * squared / (squared - c)).sum();
     1.0 + constant + sum
+}
+
+/// The index between the rows of a table; NaN where there are none.
+fn table_index(rows: &[(f64, f64)], wavelength_nm: f64) -> f64 {
+    let after = rows.partition_point(|(nm, _)| *nm <= wavelength_nm);
+    match (after.checked_sub(1).and_then(|before| rows.get(before)), rows.get(after)) {
+        (Some((low, first)), Some((high, second))) => {
+            let fraction = (wavelength_nm - low) / (high - low);
+            first * (1.0 - fraction) + second * fraction
+        }
+        (Some((_, index)), None) | (None, Some((_, index))) => *index,
+        (None, None) => f64::NAN,
+    }
 }
 
 #[cfg(test)]
@@ -210,6 +253,41 @@ mod tests {
         assert_eq!(glass.index(2000.0), MIN_INDEX, "n² is negative beside the infrared pole");
     }
 
+    #[test]
+    fn rational_terms_are_the_other_formulas_written_out() {
+        let (b, c) = (1.1, 0.012);
+        let sellmeier = Dispersion::Sellmeier { constant: 0.2, terms: vec![(b, c)] };
+        let terms = vec![RationalTerm::power(1.2, 0.0), RationalTerm::resonance(b, 2.0, c)];
+        let rational = Dispersion::Rational { is_squared: true, terms };
+        let cauchy = Dispersion::Cauchy(vec![1.5, 0.004]);
+        let terms = vec![RationalTerm::power(1.5, 0.0), RationalTerm::power(0.004, -2.0)];
+        let powers = Dispersion::Rational { is_squared: false, terms };
+        for nm in [110.0, 300.0, 550.0, 900.0, 5000.0] {
+            assert!((sellmeier.index(nm) - rational.index(nm)).abs() < 1e-14, "{nm}");
+            assert!((cauchy.index(nm) - powers.index(nm)).abs() < 1e-14, "{nm}");
+        }
+        assert!(rational.is_dispersive() && powers.is_dispersive());
+        let terms = vec![RationalTerm::power(2.25, 0.0)];
+        assert!(!Dispersion::Rational { is_squared: true, terms }.is_dispersive());
+        // Schott's old formula with the old data sheet's coefficients of BK7 (Schott, 1992).
+        let powers = [0.0, 2.0, -2.0, -4.0, -6.0, -8.0];
+        let a = [2.271_892_9, -1.010_807_7e-2, 1.059_250_9e-2, 2.081_696_5e-4, -7.647_253_8e-6, 4.924_099_1e-7];
+        let terms = a.into_iter().zip(powers).map(|(a, p)| RationalTerm::power(a, p)).collect();
+        let bk7 = Dispersion::Rational { is_squared: true, terms };
+        assert!((bk7.index(fraunhofer::HELIUM_D) - 1.5168).abs() < 2e-5);
+    }
+
+    #[test]
+    fn tables_are_joined_by_lines() {
+        let table = Dispersion::Table(vec![(400.0, 1.6), (500.0, 1.5), (700.0, 1.4)]);
+        let near = |nm, index: f64| (table.index(nm) - index).abs() < 1e-15;
+        assert!(near(300.0, 1.6) && near(400.0, 1.6) && near(450.0, 1.55) && near(600.0, 1.45) && near(900.0, 1.4));
+        assert!(table.is_dispersive() && table.abbe_number().is_some());
+        assert!(!Dispersion::Table(vec![(1.0, 1.5), (2.0, 1.5)]).is_dispersive());
+        assert_eq!(Dispersion::Table(Vec::new()).index(500.0), MIN_INDEX);
+        assert!(!Dispersion::Table(Vec::new()).is_dispersive());
+    }
+
     fn any_number() -> impl Strategy<Value = f64> {
         prop_oneof![proptest::num::f64::ANY, -2.0..2.0f64, 0.0..1.0f64, Just(0.345_228_868_816_912_4)]
     }
@@ -224,9 +302,14 @@ mod tests {
             coefficients in prop::collection::vec(any_number(), 0..5),
             wavelength_nm in prop_oneof![any_number(), 1.0..2000.0f64],
         ) {
+            let rational =
+                terms.iter().zip(0..).map(|((b, c), order)| RationalTerm { coefficient: *b, power: *c, pole: *c, order });
+            let rational = rational.collect();
             let formulas = [
                 Dispersion::Constant(constant),
                 Dispersion::Cauchy(coefficients),
+                Dispersion::Rational { is_squared: constant > 0.0, terms: rational },
+                Dispersion::Table(terms.iter().map(|(b, c)| (*c, *b)).collect()),
                 Dispersion::Sellmeier { constant, terms },
             ];
             for dispersion in formulas {

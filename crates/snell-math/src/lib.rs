@@ -13,13 +13,16 @@ pub mod color;
 pub mod dispersion;
 pub mod homogeneous;
 pub mod lanes;
+pub mod microfacet;
 pub mod portable;
 pub mod ray;
 pub mod roots;
+pub mod sampler;
 pub mod sampling;
 pub mod spectrum;
 pub mod transform;
 pub mod vector;
+pub mod warp;
 
 pub use bounds::Bounds3;
 pub use color::Rgb;

@@ -54,7 +54,7 @@ fn sobol(index: u32) -> [u32; 2] {
 
 /// Owen's nested scrambling of a binary fraction: each digit is flipped or not as the digits above it say.
 #[inline]
-const fn nested_permutation(fraction: u32, seed: u32) -> u32 {
+pub(crate) const fn nested_permutation(fraction: u32, seed: u32) -> u32 {
     // In reversed order each operation carries from a digit only to those after it.
     let mut x = fraction.reverse_bits();
     x ^= x.wrapping_mul(0x3d20_adea);

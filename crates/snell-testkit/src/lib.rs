@@ -1,8 +1,10 @@
-//! Test helpers: golden pictures, degenerate values, planted defects, random numbers that are the same in every run.
+//! Test helpers: golden pictures, chi-square tests of sampling routines, degenerate values, planted defects, random numbers
+//! that are the same in every run.
 //!
 //! Development only; nothing that is shipped depends on it. Unlike the other libraries it may read files and the
 //! environment, and panics: that is how a test speaks.
 
+pub mod chi_square;
 pub mod degenerate;
 pub mod golden;
 mod long;

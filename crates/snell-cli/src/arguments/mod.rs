@@ -1,6 +1,7 @@
 //! The command line, as clap reads it and `--help`, the manual and the completions describe it.
 
 mod drawing;
+mod glass;
 
 use std::path::PathBuf;
 
@@ -10,6 +11,7 @@ use clap_complete::Shell;
 use snell::scene::scene::{Antialiasing, Shadows, Tone};
 
 pub use drawing::{DrawArguments, HiddenName, StrokeName, ViewArguments, ViewFormat};
+pub use glass::{GlassArguments, GlassFormat, MediumName};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -20,6 +22,7 @@ Examples:
   snell draw lens                          the same scene as lines: lens.svg
   snell view lens --point 0,1,0            its matrices, and a point on its way to a pixel
   snell scenes lens --extract .            a built-in scene to begin with
+  snell glass N-BK7                        a glass: its indices, formula, transmittance
   snell check my.toml                      all mistakes of a scene, with line and column";
 
 const RENDER_EXAMPLES: &str = "\
@@ -61,6 +64,8 @@ pub enum Command {
     View(Box<ViewArguments>),
     /// List the built-in scenes, print one, or copy it to edit it
     Scenes(ScenesArguments),
+    /// List the catalogue of glasses, or tell all about one: indices, formula, transmittance
+    Glass(Box<GlassArguments>),
     /// Look for mistakes in scenes without rendering them
     Check(CheckArguments),
     /// Print the JSON Schema of scene files, for editors

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod draw;
+mod glass;
 mod mistakes;
 mod output;
 mod render;

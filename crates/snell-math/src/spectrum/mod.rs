@@ -1,14 +1,26 @@
 //! Light as a function of wavelength, and the colour it has: from spectra to tristimulus values to scene-linear
-//! [`Rgb`], and the [`Bands`] into which a dispersive surface splits white light.
+//! [`Rgb`], and back to smooth spectra; the [`Bands`] into which a dispersive surface splits white light, and the
+//! [`HeroWavelengths`] of a spectral path.
 //!
 //! Wavelengths are nanometres in vacuum. Tristimulus values (X, Y, Z) are those of the CIE 1931 standard observer,
 //! scaled so that the equal-energy spectrum of radiance 1 has Y = 1.
 
 mod bands;
+mod daylight;
+mod hero;
+mod mix;
 mod observer;
+mod smooth;
+mod solver;
+mod spectra;
 
 pub use bands::{Band, Bands};
+pub use daylight::{Daylight, d65};
+pub use hero::{HERO_WAVELENGTHS, HeroWavelengths};
+pub use mix::{SmoothLattice, SmoothMixture};
 pub use observer::{VISIBLE_NM, color_matching};
+pub use smooth::{SmoothEmission, SmoothReflectance};
+pub use spectra::{MeasuredSpectrum, MeasuredSpectrumError, Spectrum};
 
 use crate::{Rgb, portable};
 
@@ -16,7 +28,7 @@ use crate::{Rgb, portable};
 /// negative components.
 #[inline]
 #[must_use]
-pub fn xyz_to_linear_srgb([x, y, z]: [f64; 3]) -> [f64; 3] {
+pub const fn xyz_to_linear_srgb([x, y, z]: [f64; 3]) -> [f64; 3] {
     [3.2406 * x - 1.5372 * y - 0.4986 * z, -0.9689 * x + 1.8758 * y + 0.0415 * z, 0.0557 * x - 0.2040 * y + 1.0570 * z]
 }
 

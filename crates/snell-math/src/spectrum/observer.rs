@@ -17,8 +17,8 @@ const STEP_NM: f64 = 5.0;
 /// assert_eq!(color_matching(200.0), [0.0; 3]);
 /// ```
 #[must_use]
-pub fn color_matching(wavelength_nm: f64) -> [f64; 3] {
-    if !(VISIBLE_NM[0]..=VISIBLE_NM[1]).contains(&wavelength_nm) {
+pub const fn color_matching(wavelength_nm: f64) -> [f64; 3] {
+    if !(wavelength_nm >= VISIBLE_NM[0] && wavelength_nm <= VISIBLE_NM[1]) {
         return [0.0; 3];
     }
     let position = (wavelength_nm - VISIBLE_NM[0]) / STEP_NM;
@@ -32,14 +32,19 @@ pub fn color_matching(wavelength_nm: f64) -> [f64; 3] {
         (f + 1.0) * f * (f - 1.0) / 6.0,
     ];
     let mut response = [0.0; 3];
-    for (node, weight) in weights.iter().enumerate() {
+    let mut node = 0;
+    while node < weights.len() {
         // Before the first and after the last row the functions are 0.
-        let row = (index + node).checked_sub(1).and_then(|i| OBSERVER.get(i)).copied().unwrap_or_default();
-        for (sum, value) in response.iter_mut().zip(row) {
-            *sum += weight * value;
+        let row =
+            if index + node == 0 || index + node > OBSERVER.len() { [0.0; 3] } else { OBSERVER[index + node - 1] };
+        let mut component = 0;
+        while component < 3 {
+            response[component] += weights[node] * row[component];
+            component += 1;
         }
+        node += 1;
     }
-    response.map(|value| value.max(0.0))
+    [response[0].max(0.0), response[1].max(0.0), response[2].max(0.0)]
 }
 
 /// Rows (x̄, ȳ, z̄) from 360 to 830 nm.

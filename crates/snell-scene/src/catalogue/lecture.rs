@@ -3,7 +3,7 @@
 //! Follows: CS5310, lecture 3, "Refraction": n_D, at the sodium line of 589.3 nm. Where the table prints a range, the
 //! entry has its lower end. Rock salt is printed as 1.516; it measures 1.544, which is what the entry `NaCl` gives.
 
-use super::{Entry, Formula};
+use super::{Entry, Formula, Medium};
 
 pub(super) static LECTURE: [Entry; 11] = [
     printed("vacuum", &[], "vacuum, by definition", 1.0),
@@ -32,5 +32,6 @@ const fn printed(key: &'static str, aliases: &'static [&'static str], descriptio
         source: "CS5310, lecture 3, table of indices of refraction at 589.3 nm",
         formula: Formula::Constant(index),
         valid_nm: None,
+        reference: Medium::Vacuum,
     }
 }

@@ -9,12 +9,23 @@
 //!   `PMMA`, `NaCl`, `sapphire-o`, `cubic-zirconia-dispersive`, `diamond-dispersive`. An old name of a glass that is no
 //!   more in Schott's catalogue, such as `BK7`, means the glass that took its place, which has N- before it.
 //!
-//! Schott's indices are relative to air, as its data sheets give them; the difference to vacuum, a share of 0.0003, is
-//! below what a picture shows. Names are compared without regard to case, spaces, dashes and underscores. The tables
-//! are constants: nothing is parsed or built at start-up.
+//! Schott's indices are relative to air, as its data sheets give them, and by wavelengths in air; the difference to vacuum, a
+//! share of 0.0003, is below what a picture shows. What Schott's glasses absorb is here too, and metals ([`metal()`]) are. Names are
+//! compared without regard to case, spaces, dashes and underscores. The tables are constants: nothing is parsed or built at
+//! start-up. Glasses that are not here come from files ([`read_glass_file`]).
 
+mod extinction;
+mod file;
+mod glass;
 mod lecture;
 mod measured;
+mod metal;
+mod metals;
+
+pub(crate) use file::split;
+pub use file::{GlassFile, GlassProblem, is_glass_file, read_glass_file};
+pub use glass::Glass;
+pub use metal::{Metal, metal, metals};
 
 use snell_math::Dispersion;
 
@@ -36,9 +47,20 @@ pub struct Entry {
     pub source: &'static str,
     /// Its index of refraction.
     pub formula: Formula,
-    /// The vacuum wavelengths, in nanometres, between which the formula was fitted; `None` for a fixed value. Beyond,
-    /// the formula is extrapolated.
+    /// The wavelengths, in nanometres, between which the formula was fitted; `None` for a fixed value. Beyond, the
+    /// formula is extrapolated.
     pub valid_nm: Option<[f64; 2]>,
+    /// What wavelengths are measured in, and what the index is relative to.
+    pub reference: Medium,
+}
+
+/// What wavelengths are measured in, and what indices are relative to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Medium {
+    /// Nothing.
+    Vacuum,
+    /// Standard air, whose index is about 1.00028.
+    Air,
 }
 
 /// A [`Dispersion`] that can be a constant of the program.
@@ -57,6 +79,20 @@ impl Entry {
             Formula::Constant(index) => Dispersion::Constant(index),
             Formula::Sellmeier(constant, terms) => Dispersion::Sellmeier { constant, terms: terms.to_vec() },
         }
+    }
+
+    /// What the material absorbs: pairs of ascending wavelengths in nanometres and the coefficient of extinction k, the imaginary
+    /// part of the index. Empty where the catalogue does not know.
+    ///
+    /// ```
+    /// use snell_scene::catalogue;
+    /// assert!(catalogue::lookup("SF6").unwrap().extinction().len() > 10);
+    /// assert!(catalogue::lookup("water").unwrap().extinction().is_empty());
+    /// ```
+    pub fn extinction(&self) -> &'static [(u16, f32)] {
+        extinction::EXTINCTION
+            .binary_search_by(|(key, _)| key.cmp(&self.key))
+            .map_or(&[], |at| extinction::EXTINCTION[at].1)
     }
 
     /// True where one of its names is this one.
@@ -122,7 +158,15 @@ const fn material(
     constant: f64,
     terms: &'static [(f64, f64)],
 ) -> Entry {
-    Entry { key, aliases, description, source, formula: Formula::Sellmeier(constant, terms), valid_nm: Some(valid_nm) }
+    Entry {
+        key,
+        aliases,
+        description,
+        source,
+        formula: Formula::Sellmeier(constant, terms),
+        valid_nm: Some(valid_nm),
+        reference: Medium::Vacuum,
+    }
 }
 
 /// An entry of the generated table of glasses.
@@ -134,6 +178,7 @@ const fn schott(key: &'static str, valid_nm: [f64; 2], terms: &'static [(f64, f6
         source: "Schott, Zemax catalogue of 2017-01-20",
         formula: Formula::Sellmeier(0.0, terms),
         valid_nm: Some(valid_nm),
+        reference: Medium::Air,
     }
 }
 

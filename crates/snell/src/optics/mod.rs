@@ -6,11 +6,16 @@
 //! over that on the other. Indices come from [`snell_math::Dispersion::index`], angles are radians, cosines are those
 //! with the normal.
 
+mod complex;
+mod conductor;
 mod fresnel;
 mod medium;
 mod reflection;
 mod refraction;
+mod thin_film;
 
+pub use complex::ComplexIndex;
+pub use conductor::{fresnel_conductor, fresnel_conductor_average, fresnel_conductor_polarized};
 pub use fresnel::{
     FresnelAmplitudes, brewster_angle, fresnel_amplitudes, fresnel_dielectric, fresnel_dielectric_lanes,
     fresnel_dielectric_polarized,
@@ -18,6 +23,7 @@ pub use fresnel::{
 pub use medium::{beer_lambert, henyey_greenstein};
 pub use reflection::{reflect, reflect_lanes};
 pub use refraction::{cos_transmitted, critical_angle, refract, refract_lanes};
+pub use thin_film::{FilmShares, ThinFilm, thin_film};
 
 #[cfg(test)]
 mod tests;

@@ -58,8 +58,8 @@ pub type MaterialChoice = Either<MaterialName, Box<Material>>;
 #[serde(deny_unknown_fields, default)]
 #[schemars(extend("x-example" = "[material.bottle]\ndielectric = { ior = 1.52, absorption = { color = [0.2, 0.7, 0.3], distance = 0.5 } }\n"))]
 pub struct Dielectric {
-    /// The index of refraction: a number, the name of a material or glass such as "water", "diamond" or "N-BK7", or a
-    /// dispersion formula.
+    /// The index of refraction: a number, the name of a material or glass such as "water", "diamond" or "N-BK7", a glass of a
+    /// file such as "hoya.agf#FCD1" or "page.yml", or a dispersion formula.
     #[schemars(extend("minimum" = 0.1, "maximum" = 100, "default" = 1.5))]
     pub ior: Located<Ior>,
     /// Reflection and refraction follow Fresnel's equations; `reflect` and `transmit` scale them. If false, `reflect` and

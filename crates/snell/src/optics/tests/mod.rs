@@ -1,6 +1,7 @@
 //! The optics against closed forms, an independent table, and instruments (lenses, a prism) whose behaviour is known.
 
 mod directions;
+mod films;
 mod fresnel;
 mod instruments;
 mod medium;
