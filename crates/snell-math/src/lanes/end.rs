@@ -13,6 +13,12 @@ pub struct End {
 }
 
 impl End {
+    /// True where some go to the second row.
+    #[inline(always)]
+    pub fn is_split(self) -> bool {
+        self.from + self.lanes.count() as usize > WIDTH
+    }
+
     /// Each lane with its row, 0 or 1, and its place there.
     #[inline(always)]
     pub fn places(self) -> impl Iterator<Item = (usize, usize, usize)> {

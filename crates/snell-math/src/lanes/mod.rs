@@ -107,7 +107,8 @@ pub trait Lanes:
     /// Times two to the power of whole numbers from −1022 to 1023; with others what comes of it means nothing.
     fn times_power_of_two(self, power: Self) -> Self;
 
-    /// Writes some lanes, counted from 0, to the end of rows that are partly full; see [`End`].
+    /// Writes some lanes, counted from 0, to the end of rows that are partly full; see [`End`]. What stands behind the new end means
+    /// nothing afterwards.
     #[inline(always)]
     fn append(self, end: End, rows: [&mut [f64; WIDTH]; 2]) {
         let mut row = [0.0; WIDTH];

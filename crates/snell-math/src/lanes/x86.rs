@@ -14,7 +14,7 @@ use super::{Bits, End, Floats, Lanes, WIDTH, Work};
 #[inline]
 pub fn has_avx2() -> bool {
     static HAS: OnceLock<bool> = OnceLock::new();
-    *HAS.get_or_init(|| is_x86_feature_detected!("avx2"))
+    *HAS.get_or_init(|| is_x86_feature_detected!("avx2") && is_x86_feature_detected!("bmi2"))
 }
 
 /// Whether the machine has what [`Eight512`] needs.
@@ -376,6 +376,71 @@ impl Lanes for Eight256 {
     fn times_power_of_two(self, power: Self) -> Self {
         // SAFETY: as above.
         unsafe { Self(_mm256_mul_pd(self.0, power_of_two(power.0)), _mm256_mul_pd(self.1, power_of_two(power.1))) }
+    }
+    #[inline(always)]
+    fn append(self, end: End, [first, second]: [&mut [f64; WIDTH]; 2]) {
+        // SAFETY: as above.
+        unsafe {
+            let sources = sources(end);
+            let moved = Self(pick(self, sources as u32), pick(self, (sources >> 32) as u32));
+            moved.or_where_not(!Bits::first(end.from), Self::load(first, 0)).store(first, 0);
+            if end.is_split() {
+                moved.store(second, 0);
+            }
+        }
+    }
+    #[inline(always)]
+    fn append_floats(floats: Floats256, end: End, [first, second]: [&mut [f32; WIDTH]; 2]) {
+        // SAFETY: as above.
+        unsafe {
+            let sources = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(sources(end) as i64));
+            let moved = Floats256(_mm256_permutevar8x32_ps(floats.0, sources));
+            moved.or_where_not(!Bits::first(end.from), Floats256::load(first, 0)).store(first, 0);
+            if end.is_split() {
+                moved.store(second, 0);
+            }
+        }
+    }
+    #[inline(always)]
+    fn append_words(words: &[u32; WIDTH], _: usize, end: End, rows: [&mut [u32; WIDTH]; 2]) {
+        // Whatever their bits mean, they are only moved.
+        let floats = Floats256::load(bytemuck::cast_ref(words), 0);
+        Self::append_floats(floats, end, rows.map(bytemuck::cast_mut));
+    }
+}
+
+/// For [`Lanes::append`]: for each place of a row the lane that goes there, a byte each; those of the second row come round to its
+/// beginning. What is written beyond the end means nothing there, so whole rows are.
+///
+/// # Safety
+/// The machine has AVX2, and with it BMI2.
+#[inline(always)]
+unsafe fn sources(end: End) -> u64 {
+    // SAFETY: the caller knows.
+    let together = unsafe {
+        let bytes = _pdep_u64(u64::from(end.lanes.0), 0x0101_0101_0101_0101) * 0xff;
+        _pext_u64(0x0706_0504_0302_0100, bytes)
+    };
+    together.rotate_left(8 * end.from as u32)
+}
+
+/// Four of eight numbers, by their lanes, a byte each.
+///
+/// # Safety
+/// The machine has AVX2.
+#[inline(always)]
+unsafe fn pick(numbers: Eight256, lanes: u32) -> __m256d {
+    // SAFETY: the caller knows.
+    unsafe {
+        let lanes = _mm256_cvtepu8_epi64(_mm_cvtsi32_si128(lanes as i32));
+        // Each number is two words side by side.
+        let low_word = _mm256_and_si256(_mm256_slli_epi64::<1>(lanes), _mm256_set1_epi64x(6));
+        let high_word = _mm256_slli_epi64::<32>(_mm256_add_epi64(low_word, _mm256_set1_epi64x(1)));
+        let words = _mm256_or_si256(low_word, high_word);
+        let low = _mm256_castps_pd(_mm256_permutevar8x32_ps(_mm256_castpd_ps(numbers.0), words));
+        let high = _mm256_castps_pd(_mm256_permutevar8x32_ps(_mm256_castpd_ps(numbers.1), words));
+        // The bit of four becomes the sign.
+        _mm256_blendv_pd(low, high, _mm256_castsi256_pd(_mm256_slli_epi64::<61>(lanes)))
     }
 }
 
