@@ -79,6 +79,13 @@ impl Bits {
         self.0 >> lane & 1 == 1
     }
 
+    /// The same in a register's width.
+    #[inline(always)]
+    #[must_use]
+    pub const fn mask(self) -> u32 {
+        self.0 as u32
+    }
+
     /// These without those.
     #[inline(always)]
     #[must_use]

@@ -70,6 +70,8 @@ pub trait Lanes:
     const COUNT: usize;
     /// As many `f32`.
     type Floats: Floats;
+    /// Eight `f32` by the same instructions, however many lanes there are.
+    type Eight: Eight;
 
     /// Does a stretch of work, compiled for these instructions. What it calls must be `#[inline(always)]` to be so as well, which a
     /// closure cannot be.
@@ -185,6 +187,22 @@ pub trait Floats:
     }
     /// Where it is NaN.
     fn is_nan(self) -> Bits;
+}
+
+/// Eight `f32` side by side, whatever the number of lanes: the registers of filters that test a ray with eight things.
+pub trait Eight: Floats + Div<Output = Self> {
+    /// All lanes.
+    fn to_array(self) -> [f32; WIDTH];
+    /// `self` where it is less, else `other`: so `other` where one of them is NaN.
+    fn lesser(self, other: Self) -> Self;
+    /// `self` where it is greater, else `other`: so `other` where one of them is NaN.
+    fn greater(self, other: Self) -> Self;
+    /// With its sign changed where the sign of `sign` is negative.
+    fn times_sign(self, sign: Self) -> Self;
+    /// Where this is less or equal; never with NaN.
+    fn le(self, other: Self) -> Bits;
+    /// Asks for memory that will soon be read.
+    fn prefetch<T>(place: &T);
 }
 
 /// What can be done with any kind of lanes.

@@ -8,6 +8,7 @@ use super::{Bits, Floats, Lanes, WIDTH, Work};
 impl Lanes for f64 {
     const COUNT: usize = 1;
     type Floats = f32;
+    type Eight = EightFloats;
 
     #[inline(always)]
     fn stage<W: Work>(work: W) -> W::Output {
@@ -147,11 +148,12 @@ macro_rules! componentwise {
     };
 }
 componentwise!(Eight: Add add +, Sub sub -, Mul mul *, Div div /);
-componentwise!(EightFloats: Add add +, Sub sub -, Mul mul *);
+componentwise!(EightFloats: Add add +, Sub sub -, Mul mul *, Div div /);
 
 impl Lanes for Eight {
     const COUNT: usize = WIDTH;
     type Floats = EightFloats;
+    type Eight = EightFloats;
 
     #[inline(always)]
     fn stage<W: Work>(work: W) -> W::Output {
@@ -252,4 +254,29 @@ impl Floats for EightFloats {
     fn is_nan(self) -> Bits {
         bits(|i| self.0[i].is_nan())
     }
+}
+
+impl super::Eight for EightFloats {
+    #[inline(always)]
+    fn to_array(self) -> [f32; WIDTH] {
+        self.0
+    }
+    #[inline(always)]
+    fn lesser(self, other: Self) -> Self {
+        Self(from_fn(|i| if self.0[i] < other.0[i] { self.0[i] } else { other.0[i] }))
+    }
+    #[inline(always)]
+    fn greater(self, other: Self) -> Self {
+        Self(from_fn(|i| if self.0[i] > other.0[i] { self.0[i] } else { other.0[i] }))
+    }
+    #[inline(always)]
+    fn times_sign(self, sign: Self) -> Self {
+        Self(from_fn(|i| f32::from_bits(self.0[i].to_bits() ^ (sign.0[i].to_bits() & 1 << 31))))
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> Bits {
+        bits(|i| self.0[i] <= other.0[i])
+    }
+    #[inline(always)]
+    fn prefetch<T>(_: &T) {}
 }

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use super::{Bits, End, Floats, InstructionSet, LaneColor, LaneVector, Lanes, WIDTH, Work, dispatch};
+use super::{Bits, Eight, End, Floats, InstructionSet, LaneColor, LaneVector, Lanes, WIDTH, Work, dispatch};
 use crate::{Rgb, Vector3};
 
 /// Everything that lanes can do, on rows of numbers; a row of bits for each result.
@@ -87,6 +87,24 @@ impl Work for Everything<'_> {
     }
 }
 
+/// Everything that rows of eight `f32` can do besides.
+struct Rows<'a>(&'a [f32; WIDTH], &'a [f32; WIDTH]);
+
+impl Work for Rows<'_> {
+    type Output = (Vec<u32>, Bits);
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Self::Output {
+        let (a, b) = (<L::Eight as Floats>::load(self.0, 0), <L::Eight as Floats>::load(self.1, 0));
+        let all = [a / b, a.lesser(b), a.greater(b), a.times_sign(b), <L::Eight as Floats>::splat(2.0)];
+        let mut bits = Vec::new();
+        for row in all {
+            bits.extend(row.to_array().map(|x| if x.is_nan() { u32::MAX } else { x.to_bits() }));
+        }
+        (bits, a.le(b))
+    }
+}
+
 fn numbers() -> impl Strategy<Value = [f64; WIDTH]> {
     let number = prop_oneof![
         -1e3..1e3f64,
@@ -109,6 +127,11 @@ proptest! {
         let expected = dispatch(InstructionSet::Scalar, work());
         for set in InstructionSet::available() {
             prop_assert_eq!(&dispatch(set, work()), &expected, "{:?}", set);
+        }
+        let floats = [a, b].map(|row| row.map(|x| x as f32));
+        let expected_rows = dispatch(InstructionSet::Scalar, Rows(&floats[0], &floats[1]));
+        for set in InstructionSet::available() {
+            prop_assert_eq!(&dispatch(set, Rows(&floats[0], &floats[1])), &expected_rows, "{:?}", set);
         }
         // The twin: one bit of one number is enough to tell.
         let mut other = a;

@@ -8,7 +8,7 @@ use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::OnceLock;
 
-use super::{Bits, End, Floats, Lanes, WIDTH, Work};
+use super::{Bits, Eight, End, Floats, Lanes, WIDTH, Work};
 
 /// Whether the machine has what [`Eight256`] needs.
 #[inline]
@@ -75,6 +75,7 @@ macro_rules! float_operators {
         $(operator!($type, Add, add, |a, b| Self(_mm256_add_ps(a.0, b.0)));
         operator!($type, Sub, sub, |a, b| Self(_mm256_sub_ps(a.0, b.0)));
         operator!($type, Mul, mul, |a, b| Self(_mm256_mul_ps(a.0, b.0)));
+        operator!($type, Div, div, |a, b| Self(_mm256_div_ps(a.0, b.0)));
         impl Neg for $type {
             type Output = Self;
             #[inline(always)]
@@ -111,6 +112,7 @@ impl Neg for Eight256 {
 impl Lanes for Eight512 {
     const COUNT: usize = WIDTH;
     type Floats = Floats512;
+    type Eight = Floats512;
 
     #[inline(always)]
     fn stage<W: Work>(work: W) -> W::Output {
@@ -268,6 +270,7 @@ unsafe fn moves(end: End) -> (__m512i, [u8; 2]) {
 impl Lanes for Eight256 {
     const COUNT: usize = WIDTH;
     type Floats = Floats256;
+    type Eight = Floats256;
 
     #[inline(always)]
     fn stage<W: Work>(work: W) -> W::Output {
@@ -484,7 +487,7 @@ unsafe fn join(low: __m256d, high: __m256d) -> Bits {
 }
 
 macro_rules! floats {
-    ($type:ident, |$a:ident, $b:ident| $lt:expr, $is_zero:expr, $is_nan:expr, |$bits:ident| $blend:expr) => {
+    ($type:ident, |$a:ident, $b:ident| $lt:expr, $le:expr, $is_zero:expr, $is_nan:expr, |$bits:ident| $blend:expr) => {
         impl Floats for $type {
             #[inline(always)]
             fn splat(value: f32) -> Self {
@@ -531,12 +534,51 @@ macro_rules! floats {
                 unsafe { Self($blend) }
             }
         }
+
+        impl Eight for $type {
+            #[inline(always)]
+            fn to_array(self) -> [f32; WIDTH] {
+                let mut row = [0.0; WIDTH];
+                self.store(&mut row, 0);
+                row
+            }
+            #[inline(always)]
+            fn lesser(self, other: Self) -> Self {
+                // SAFETY: as above.
+                unsafe { Self(_mm256_min_ps(self.0, other.0)) }
+            }
+            #[inline(always)]
+            fn greater(self, other: Self) -> Self {
+                // SAFETY: as above.
+                unsafe { Self(_mm256_max_ps(self.0, other.0)) }
+            }
+            #[inline(always)]
+            fn times_sign(self, sign: Self) -> Self {
+                // SAFETY: as above.
+                unsafe { Self(_mm256_xor_ps(self.0, _mm256_and_ps(sign.0, _mm256_set1_ps(-0.0)))) }
+            }
+            #[inline(always)]
+            fn le(self, other: Self) -> Bits {
+                let ($a, $b) = (self.0, other.0);
+                // SAFETY: as above.
+                unsafe { Bits($le as u8) }
+            }
+            #[inline(always)]
+            fn prefetch<T>(place: &T) {
+                let start = std::ptr::from_ref(place).cast::<i8>();
+                for line in (0..size_of::<T>()).step_by(64) {
+                    // SAFETY: within the object; and a prefetch reads nothing.
+                    unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(line)) };
+                }
+            }
+        }
     };
 }
 
 floats!(
     Floats512,
     |a, b| _mm256_cmp_ps_mask::<_CMP_LT_OQ>(a, b),
+    _mm256_cmp_ps_mask::<_CMP_LE_OQ>(a, b),
     _mm256_cmp_ps_mask::<_CMP_EQ_OQ>(a, _mm256_setzero_ps()),
     _mm256_cmp_ps_mask::<_CMP_UNORD_Q>(a, a),
     |bits| _mm256_mask_blend_ps(bits.0, b, a)
@@ -544,6 +586,7 @@ floats!(
 floats!(
     Floats256,
     |a, b| _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(a, b)),
+    _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b)),
     _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_EQ_OQ>(a, _mm256_setzero_ps())),
     _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_UNORD_Q>(a, a)),
     |bits| {

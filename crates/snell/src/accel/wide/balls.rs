@@ -12,10 +12,10 @@
 //! m ± (r + δ).
 
 use snell_math::Point3;
+use snell_math::lanes::{Eight, WIDTH};
 
 use super::probe::{EPSILON, Probe};
 use super::shared::{NONE, number};
-use super::simd::{Eight, WIDTH};
 
 /// Eight balls.
 #[derive(Clone, Copy, Debug)]
@@ -71,16 +71,16 @@ impl<F: Eight> BallRay<F> {
     pub(super) fn look(&self, block: &BallBlock, limit: F) -> u32 {
         let mut f = self.origin;
         for (f, row) in f.iter_mut().zip(&block.center) {
-            *f = F::load(row).sub(*f);
+            *f = F::load(row, 0) - *f;
         }
         let middle = dot(f, self.scaled);
         let mut beside = f;
         for (beside, direction) in beside.iter_mut().zip(self.direction) {
-            *beside = beside.sub(direction.mul(middle));
+            *beside = *beside - direction * middle;
         }
-        let reach = F::load(&block.radius).add(self.error);
-        let (front, back) = (middle.sub(reach), middle.add(reach));
-        dot(beside, beside).le(reach.mul(reach)) & front.le(limit) & F::splat(0.0).le(back)
+        let reach = F::load(&block.radius, 0) + self.error;
+        let (front, back) = (middle - reach, middle + reach);
+        (dot(beside, beside).le(reach * reach) & front.le(limit) & F::splat(0.0).le(back)).mask()
     }
 }
 
@@ -89,7 +89,7 @@ impl<F: Eight> BallRay<F> {
 
 #[inline(always)]
 fn dot<F: Eight>(a: [F; 3], b: [F; 3]) -> F {
-    a[0].mul(b[0]).add(a[1].mul(b[1])).add(a[2].mul(b[2]))
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[inline(always)]

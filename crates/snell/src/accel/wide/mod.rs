@@ -19,7 +19,6 @@ mod path;
 mod primitives;
 mod probe;
 mod shared;
-mod simd;
 mod slabs;
 mod traverse;
 mod validate;
@@ -34,10 +33,10 @@ pub(crate) use memory::roomy;
 pub(crate) use path::Path;
 pub(crate) use probe::{Approach, BoxLine, BoxRay, EPSILON, Probe, splat};
 pub(crate) use shared::{NONE, Visited, number};
-pub(crate) use simd::{Eight, Kernel, WIDTH, dispatch};
 pub(crate) use traverse::take_lane;
 
 use snell_math::Bounds3;
+use snell_math::lanes::WIDTH;
 
 use super::bvh::MAX_DEPTH;
 use super::bvh::box32::Box32;

@@ -3,8 +3,9 @@
 //! In a tree that is larger than the caches a ray spends most of its time waiting for nodes. While one waits, others go on:
 //! Kocberber, Falsafi and Grot, "Asynchronous Memory Access Chaining", VLDB 9(4), 2015, do so for lookups in databases.
 
+use snell_math::lanes::Eight;
+
 use super::probe::{BoxRay, entry_of};
-use super::simd::Eight;
 use super::traverse::{Stack, go_on};
 use super::{LEAF, WideTree};
 

@@ -2,12 +2,11 @@
 
 use std::ops::ControlFlow;
 
-use snell_math::lanes::InstructionSet;
+use snell_math::lanes::{Eight, InstructionSet, Lanes, WIDTH, Work, dispatch};
 use snell_math::{Bounds3, Point3, Ray};
 
 use super::balls::{BallBlock, BallRay};
 use super::shared::{NONE, Visited, number};
-use super::simd::{Eight, Kernel, WIDTH, dispatch};
 use super::{Approach, BoxRay, Probe, WideTree, take_lane};
 use crate::accel::bvh::{BuildError, Bvh};
 
@@ -249,12 +248,12 @@ struct Closest<'a, H, T> {
     search: &'a mut Search<H, T>,
 }
 
-impl<H: Candidate, T: FnMut(u32, f64) -> Option<H>> Kernel for Closest<'_, H, T> {
+impl<H: Candidate, T: FnMut(u32, f64) -> Option<H>> Work for Closest<'_, H, T> {
     type Output = ();
     #[inline(always)]
-    fn run<F: Eight>(self) {
+    fn run<L: Lanes>(self) {
         let Self { bvh, probe, search } = self;
-        let (boxes, balls) = (BoxRay::<F>::new(probe), BallRay::<F>::new(probe));
+        let (boxes, balls) = (BoxRay::<L::Eight>::new(probe), BallRay::<L::Eight>::new(probe));
         bvh.tree.nearest(&boxes, probe.limit(search.t_max), |leaf, limit| {
             search.leaf(&bvh.leaves[leaf as usize], candidates(bvh, &balls, leaf, *limit));
             *limit = probe.limit(search.t_max);
@@ -291,12 +290,12 @@ struct Each<'a, V> {
     once: &'a mut Once<V>,
 }
 
-impl<V: FnMut(u32) -> ControlFlow<()>> Kernel for Each<'_, V> {
+impl<V: FnMut(u32) -> ControlFlow<()>> Work for Each<'_, V> {
     type Output = ControlFlow<()>;
     #[inline(always)]
-    fn run<F: Eight>(self) -> ControlFlow<()> {
+    fn run<L: Lanes>(self) -> ControlFlow<()> {
         let Self { bvh, probe, limit, once } = self;
-        let (boxes, balls) = (BoxRay::<F>::new(probe), BallRay::<F>::new(probe));
+        let (boxes, balls) = (BoxRay::<L::Eight>::new(probe), BallRay::<L::Eight>::new(probe));
         bvh.tree.each(&boxes, limit, |leaf| once.leaf(&bvh.leaves[leaf as usize], candidates(bvh, &balls, leaf, limit)))
     }
 }

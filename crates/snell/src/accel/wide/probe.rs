@@ -22,8 +22,8 @@
 //! [`slabs`]: super::slabs
 
 use snell_math::Ray;
+use snell_math::lanes::Eight;
 
-use super::simd::Eight;
 use super::slabs::Slabs;
 use super::{WideNode, WideTree};
 
@@ -202,22 +202,22 @@ impl<F: Eight> BoxRay<F> {
     #[inline(always)]
     fn near(&self, node: &WideNode, axis: usize) -> F {
         // Masked only to show that the index is in range.
-        F::load(&node.planes[axis][self.near_side[axis] & 1]).sub(self.near_origin[axis]).mul(self.inverse[axis])
+        (F::load(&node.planes[axis][self.near_side[axis] & 1], 0) - self.near_origin[axis]) * self.inverse[axis]
     }
 
     /// Where the ray meets the farther planes of an axis, enlarged.
     #[inline(always)]
     fn far(&self, node: &WideNode, axis: usize) -> F {
-        let planes = F::load(&node.planes[axis][self.near_side[axis] & 1 ^ 1]);
-        planes.sub(self.far_origin[axis]).mul(self.far_inverse[axis])
+        let planes = F::load(&node.planes[axis][self.near_side[axis] & 1 ^ 1], 0);
+        (planes - self.far_origin[axis]) * self.far_inverse[axis]
     }
 
     /// Which children of a node the ray enters before the limit, and where it does, not before 0.
     #[inline(always)]
     pub(super) fn enter(&self, node: &WideNode, limit: F) -> (u32, F) {
-        let enter = self.near(node, 0).max(self.near(node, 1)).max(self.near(node, 2).max(F::splat(0.0)));
-        let leave = self.far(node, 0).min(self.far(node, 1)).min(self.far(node, 2).min(limit));
-        (enter.le(leave), enter)
+        let enter = self.near(node, 0).greater(self.near(node, 1)).greater(self.near(node, 2).greater(F::splat(0.0)));
+        let leave = self.far(node, 0).lesser(self.far(node, 1)).lesser(self.far(node, 2).lesser(limit));
+        (enter.le(leave).mask(), enter)
     }
 }
 

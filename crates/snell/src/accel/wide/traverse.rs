@@ -6,8 +6,9 @@
 use std::mem::MaybeUninit;
 use std::ops::ControlFlow;
 
+use snell_math::lanes::{Eight, WIDTH};
+
 use super::probe::{BoxRay, entry_of, key};
-use super::simd::{Eight, WIDTH};
 use super::slabs::Slabs;
 use super::{LEAF, STACK, WideNode, WideTree};
 

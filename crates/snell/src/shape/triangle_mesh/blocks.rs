@@ -25,8 +25,10 @@
 //!
 //! [`watertight`]: super::watertight
 
+use snell_math::lanes::{Eight, WIDTH};
+
 use super::watertight::RaySpace;
-use crate::accel::wide::{EPSILON, Eight, NONE, Probe, WIDTH, number, splat};
+use crate::accel::wide::{EPSILON, NONE, Probe, number, splat};
 
 /// Eight triangles, in the order of their numbers. Five cache lines.
 #[derive(Clone, Copy, Debug)]
@@ -143,9 +145,9 @@ impl<F: Eight> BlockRay<F> {
     #[inline(always)]
     fn sheared(&self, block: &TriangleBlock, corner: usize) -> [F; 3] {
         let row = |k: usize| &block.corners[corner][self.axes[k]];
-        let z = F::load(row(2)).sub(self.origin[2]).times_sign(self.sign);
-        let x = F::load(row(0)).sub(self.origin[0]).sub(self.slopes[0].mul(z));
-        let y = F::load(row(1)).sub(self.origin[1]).sub(self.slopes[1].mul(z));
+        let z = (F::load(row(2), 0) - self.origin[2]).times_sign(self.sign);
+        let x = F::load(row(0), 0) - self.origin[0] - self.slopes[0] * z;
+        let y = F::load(row(1), 0) - self.origin[1] - self.slopes[1] * z;
         [x, y, z]
     }
 
@@ -154,39 +156,40 @@ impl<F: Eight> BlockRay<F> {
     pub(super) fn look(&self, block: &TriangleBlock, limit: F) -> Option<Verdict<F>> {
         let (a, b, c) = (self.sheared(block, 0), self.sheared(block, 1), self.sheared(block, 2));
         let (u, v, w) = (edge(b, c), edge(c, a), edge(a, b));
-        let sum = size(a).add(size(b)).add(size(c));
-        let tolerance = sum.add(self.error).mul(self.twice);
-        let (least, most) = (u.min(v).min(w), u.max(v).max(w));
+        let sum = size(a) + size(b) + size(c);
+        let tolerance = (sum + self.error) * self.twice;
+        let (least, most) = (u.lesser(v).lesser(w), u.greater(v).greater(w));
         let negative = F::splat(-0.0);
         let candidates = tolerance.times_sign(negative).le(least) | most.le(tolerance);
-        if candidates == 0 {
+        if candidates.is_empty() {
             return None;
         }
-        let slack = self.error.mul(F::splat(10.0));
-        let (front, back) = (a[2].min(b[2]).min(c[2]).sub(slack), a[2].max(b[2]).max(c[2]).add(slack));
+        let slack = self.error * F::splat(10.0);
+        let (front, back) = (a[2].lesser(b[2]).lesser(c[2]) - slack, a[2].greater(b[2]).greater(c[2]) + slack);
         let candidates = candidates & front.le(limit) & F::splat(0.0).le(back);
-        let area = u.add(v).add(w);
+        let area = u + v + w;
         let size = area.abs();
-        let is_clear = tolerance.mul(F::splat(8.0)).lt(size);
+        let is_clear = (tolerance * F::splat(8.0)).lt(size);
         let sure = candidates & is_clear & (tolerance.lt(least) | most.lt(tolerance.times_sign(negative)));
-        let (ab, ac) = (b[2].sub(a[2]), c[2].sub(a[2]));
-        let inverse = F::splat(1.0).div(area);
+        let (ab, ac) = (b[2] - a[2], c[2] - a[2]);
+        let inverse = F::splat(1.0) / area;
         // Weights first: the product of an edge function and a length may be too small a number.
-        let middle = a[2].add(v.mul(inverse).mul(ab).add(w.mul(inverse).mul(ac)));
-        let width = ab.abs().add(ac.abs()).mul(tolerance.mul(inverse.abs()).mul(F::splat(12.0)));
-        let width = width.add(slack);
-        Some(Verdict { sure, unsure: candidates & !sure, low: middle.sub(width), high: middle.add(width) })
+        let middle = a[2] + (v * inverse * ab + w * inverse * ac);
+        let width = (ab.abs() + ac.abs()) * (tolerance * inverse.abs() * F::splat(12.0));
+        let width = width + slack;
+        let unsure = candidates.without(sure).mask();
+        Some(Verdict { sure: sure.mask(), unsure, low: middle - width, high: middle + width })
     }
 }
 
 /// The edge function from one corner to the next.
 #[inline(always)]
 fn edge<F: Eight>(from: [F; 3], to: [F; 3]) -> F {
-    from[0].mul(to[1]).sub(from[1].mul(to[0]))
+    from[0] * to[1] - from[1] * to[0]
 }
 
 /// The magnitude of a corner across the ray.
 #[inline(always)]
 fn size<F: Eight>(corner: [F; 3]) -> F {
-    corner[0].abs().add(corner[1].abs())
+    corner[0].abs() + corner[1].abs()
 }

@@ -4,12 +4,13 @@
 //! its turn. The steps are those of a ray by itself, in the same order, so the hits are the same.
 
 use snell_math::Ray;
+use snell_math::lanes::{Eight, Lanes, Work, dispatch};
 
 use super::blocks::{BlockLine, BlockRay};
 use super::queries::Search;
 use super::watertight::RaySpace;
 use super::{MeshHit, TriangleMesh};
-use crate::accel::wide::{Approach, BoxLine, BoxRay, Eight, Kernel, Path, Probe, dispatch};
+use crate::accel::wide::{Approach, BoxLine, BoxRay, Path, Probe};
 
 /// How many rays are in flight: enough to wait for memory together, few enough for the nearest cache to hold what is known of them.
 const IN_FLIGHT: usize = 16;
@@ -84,10 +85,10 @@ impl<'a> Flight<'a> {
     }
 }
 
-impl Kernel for Many<'_, '_> {
+impl Work for Many<'_, '_> {
     type Output = ();
     #[inline(always)]
-    fn run<F: Eight>(mut self) {
+    fn run<L: Lanes>(mut self) {
         let mesh = self.mesh;
         let mut flights: Vec<Flight> = Vec::with_capacity(IN_FLIGHT);
         while flights.len() < IN_FLIGHT
@@ -98,8 +99,8 @@ impl Kernel for Many<'_, '_> {
         }
         let mut turn = 0;
         while let Some(flight) = flights.get_mut(turn) {
-            if flight.step::<F>(mesh) {
-                flight.path.prefetch::<F>(&mesh.tree, |leaf| F::prefetch(&mesh.blocks[leaf as usize]));
+            if flight.step::<L::Eight>(mesh) {
+                flight.path.prefetch::<L::Eight>(&mesh.tree, |leaf| L::Eight::prefetch(&mesh.blocks[leaf as usize]));
                 turn += 1;
             } else {
                 self.hits[flight.place] = flight.search.finish(flight.limit);

@@ -10,11 +10,12 @@
 use std::ops::ControlFlow;
 
 use snell_math::Ray;
+use snell_math::lanes::{Eight, Floats, Lanes, WIDTH, Work, dispatch};
 
 use super::blocks::{BlockRay, TriangleBlock};
 use super::watertight::{Meeting, RaySpace};
 use super::{MeshHit, TriangleMesh};
-use crate::accel::wide::{Approach, BoxRay, Eight, Kernel, NONE, Probe, Visited, WIDTH, dispatch, number, take_lane};
+use crate::accel::wide::{Approach, BoxRay, NONE, Probe, Visited, number, take_lane};
 
 /// How many triangles that are surely met wait for the decision, at most.
 const WAITING: usize = 8;
@@ -160,13 +161,13 @@ struct Closest<'a> {
     t_max: f64,
 }
 
-impl Kernel for Closest<'_> {
+impl Work for Closest<'_> {
     type Output = Option<MeshHit>;
     #[inline(always)]
-    fn run<F: Eight>(self) -> Option<MeshHit> {
+    fn run<L: Lanes>(self) -> Option<MeshHit> {
         let Self { mesh, probe, space, t_min, t_max } = self;
         let mut search = Search::new(&mesh.blocks, space, t_min, t_max);
-        let (boxes, triangles) = (BoxRay::<F>::new(probe), BlockRay::<F>::new(probe, &search.space));
+        let (boxes, triangles) = (BoxRay::<L::Eight>::new(probe), BlockRay::<L::Eight>::new(probe, &search.space));
         let limit = mesh.tree.nearest(&boxes, probe.limit(search.t_max), |leaf, limit| {
             search.leaf(&triangles, probe, leaf, limit);
         });
@@ -210,18 +211,18 @@ struct Any<'a> {
     t_max: f64,
 }
 
-impl Kernel for Any<'_> {
+impl Work for Any<'_> {
     type Output = bool;
     #[inline(always)]
-    fn run<F: Eight>(self) -> bool {
+    fn run<L: Lanes>(self) -> bool {
         let Self { mesh, probe, space, t_min, t_max } = self;
-        let (boxes, triangles) = (BoxRay::<F>::new(probe), BlockRay::<F>::new(probe, space));
+        let (boxes, triangles) = (BoxRay::<L::Eight>::new(probe), BlockRay::<L::Eight>::new(probe, space));
         let limit = probe.limit(t_max);
-        let surely_before = F::splat(probe.surely_before(t_max));
+        let surely_before = L::Eight::splat(probe.surely_before(t_max));
         let visit = |leaf: u32| {
             let block = &mesh.blocks[leaf as usize];
-            let Some(verdict) = triangles.look(block, F::splat(limit)) else { return ControlFlow::Continue(()) };
-            if verdict.sure & F::splat(0.0).lt(verdict.low) & verdict.high.le(surely_before) != 0 {
+            let Some(verdict) = triangles.look(block, L::Eight::splat(limit)) else { return ControlFlow::Continue(()) };
+            if verdict.sure & (L::Eight::splat(0.0).lt(verdict.low) & verdict.high.le(surely_before)).mask() != 0 {
                 return ControlFlow::Break(());
             }
             let mut rest = verdict.sure | verdict.unsure;
@@ -277,16 +278,16 @@ struct Each<'a, 'b, V> {
     once: &'b mut Once<'a, V>,
 }
 
-impl<V: FnMut(MeshHit) -> ControlFlow<()>> Kernel for Each<'_, '_, V> {
+impl<V: FnMut(MeshHit) -> ControlFlow<()>> Work for Each<'_, '_, V> {
     type Output = ControlFlow<()>;
     #[inline(always)]
-    fn run<F: Eight>(self) -> ControlFlow<()> {
+    fn run<L: Lanes>(self) -> ControlFlow<()> {
         let Self { mesh, probe, once } = self;
-        let (boxes, triangles) = (BoxRay::<F>::new(probe), BlockRay::<F>::new(probe, once.space));
+        let (boxes, triangles) = (BoxRay::<L::Eight>::new(probe), BlockRay::<L::Eight>::new(probe, once.space));
         let limit = probe.limit(once.t_max);
         mesh.tree.each(&boxes, limit, |leaf| {
             let block = &mesh.blocks[leaf as usize];
-            let Some(verdict) = triangles.look(block, F::splat(limit)) else { return ControlFlow::Continue(()) };
+            let Some(verdict) = triangles.look(block, L::Eight::splat(limit)) else { return ControlFlow::Continue(()) };
             let mut candidates = verdict.sure | verdict.unsure;
             while candidates != 0 {
                 once.decide(block, take_lane(&mut candidates))?;

@@ -4,13 +4,13 @@
 use std::ops::ControlFlow;
 
 use proptest::prelude::*;
-use snell_math::lanes::InstructionSet;
+use snell_math::lanes::{Eight, Floats, InstructionSet, Lanes, WIDTH, Work, dispatch};
 
 use super::blocks::BlockRay;
 use super::watertight::{Meeting, RaySpace};
 use super::*;
 use crate::accel::random::Random;
-use crate::accel::wide::{Approach, Eight, Kernel, Probe, WIDTH, dispatch, number};
+use crate::accel::wide::{Approach, Probe, number};
 
 /// Kinds of meshes that filters have fallen over.
 #[derive(Clone, Copy, Debug)]
@@ -179,14 +179,14 @@ proptest! {
 /// What the filter says of all triangles of a block, for one ray.
 struct Look<'a>(&'a TriangleMesh, &'a Probe, &'a RaySpace);
 
-impl Kernel for Look<'_> {
+impl Work for Look<'_> {
     type Output = Vec<(u32, bool, f32, f32)>;
     #[inline(always)]
-    fn run<F: Eight>(self) -> Self::Output {
-        let ray = BlockRay::<F>::new(self.1, self.2);
+    fn run<L: Lanes>(self) -> Self::Output {
+        let ray = BlockRay::<L::Eight>::new(self.1, self.2);
         let mut found = Vec::new();
         for block in &self.0.blocks {
-            let Some(verdict) = ray.look(block, F::splat(f32::INFINITY)) else { continue };
+            let Some(verdict) = ray.look(block, L::Eight::splat(f32::INFINITY)) else { continue };
             let (low, high) = (verdict.low.to_array(), verdict.high.to_array());
             for lane in (0..WIDTH).filter(|lane| (verdict.sure | verdict.unsure) >> lane & 1 == 1) {
                 found.push((number(block.triangles[lane]), verdict.sure >> lane & 1 == 1, low[lane], high[lane]));
