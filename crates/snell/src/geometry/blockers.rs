@@ -23,19 +23,18 @@ impl Geometry {
         })
     }
 
-    /// As [`Geometry::gather_blockers`], of the primitives in the world's hierarchy alone; the hits with the number of a lane.
+    /// As [`Geometry::gather_blockers`], of the primitives in the world's hierarchy alone; the hits are those of the only lane.
     #[inline(never)]
     pub(super) fn is_blocked_by_bounded(
         &self,
         ray: &Ray,
         distance: f64,
         any_blocks: bool,
-        lane: usize,
         hits: &mut Vec<(u8, Hit)>,
         scratch: &mut QueryScratch,
     ) -> bool {
         self.world.bvh.any(ray, distance, |index| {
-            let keep = |hit| hits.push((lane as u8, hit));
+            let keep = |hit| hits.push((0, hit));
             let primitive = &self.world.primitives[index as usize];
             self.is_blocked_by(index, primitive, ray, distance, any_blocks, keep, scratch)
         })
@@ -59,13 +58,8 @@ impl Geometry {
             let space = &self.prototypes[*prototype as usize];
             let ray = self.world.placements[*placement as usize].to_local(ray);
             return space.any(&ray, distance, |inner, primitive| {
-                let keep = |LocalHit { t, place }| keep(Hit { t, primitive: index, inner, place });
-                let attributes = &space.attributes[inner as usize];
-                if any_blocks || attributes.is_opaque {
-                    self.is_met(space, primitive, &ray, distance, scratch)
-                } else {
-                    self.blocks(space, attributes, primitive, *material, &ray, distance, scratch, keep)
-                }
+                let outer = (index, *material);
+                self.is_blocked_inside(space, outer, inner, primitive, &ray, distance, any_blocks, &mut keep, scratch)
             });
         }
         let attributes = &self.world.attributes[index as usize];
@@ -74,6 +68,30 @@ impl Geometry {
         }
         let keep = |LocalHit { t, place }| keep(Hit { t, primitive: index, inner: NONE, place });
         self.blocks(&self.world, attributes, primitive, NONE, ray, distance, scratch, keep)
+    }
+
+    /// As [`Geometry::is_blocked_by`], of one primitive of a prototype, whose space the ray is given in; `outer` is the instance in
+    /// the world and the material that it hands on.
+    #[expect(clippy::too_many_arguments, reason = "a private step of the functions above")]
+    #[inline(always)]
+    pub(super) fn is_blocked_inside(
+        &self,
+        space: &Space,
+        (instance, material): (u32, u32),
+        inner: u32,
+        primitive: &Primitive,
+        ray: &Ray,
+        distance: f64,
+        any_blocks: bool,
+        mut keep: impl FnMut(Hit),
+        scratch: &mut QueryScratch,
+    ) -> bool {
+        let attributes = &space.attributes[inner as usize];
+        if any_blocks || attributes.is_opaque {
+            return self.is_met(space, primitive, ray, distance, scratch);
+        }
+        let keep = |LocalHit { t, place }| keep(Hit { t, primitive: instance, inner, place });
+        self.blocks(space, attributes, primitive, material, ray, distance, scratch, keep)
     }
 
     /// Whether a ray, given in the primitive's space, meets one primitive that is no instance with 0 < t < `distance`.
@@ -89,6 +107,10 @@ impl Geometry {
         match primitive {
             Primitive::Sphere(sphere) => sphere.intersect(ray, 0.0, distance).is_some(),
             Primitive::Plane(plane) => plane.intersect(ray, 0.0, distance).is_some(),
+            Primitive::Mesh { mesh, .. } => {
+                let carried = space.placement(primitive).map_or(*ray, |placement| placement.to_local(ray));
+                self.meshes[*mesh as usize].any(&carried, 0.0, distance)
+            }
             primitive => self.intersect_primitive(space, primitive, ray, 0.0, distance, scratch).is_some(),
         }
     }

@@ -1,12 +1,13 @@
 //! Questions of many rays at once: eight side by side.
 //!
 //! Plain spheres and planes that stand in the world as they are, which most rays are tested with, are met by all lanes at once;
-//! everything else by one ray after the other. What is found is what [`Geometry::intersect`] and [`Geometry::gather_blockers`]
-//! find for each ray alone.
+//! hierarchies, instances and meshes by rays together, see `packets.rs`; everything else by one ray after the other. What is found
+//! is what [`Geometry::intersect`] and [`Geometry::gather_blockers`] find for each ray alone.
 
 use snell_math::lanes::{Bits, LaneVector, Lanes, WIDTH};
 use snell_math::{Point3, Ray, Vector3};
 
+use super::packets::{BlockedInSpace, Found, NearestInSpace, RayGroup, Shadows};
 use super::space::{Attributes, NONE, Primitive};
 use super::{Geometry, Hit, InnerHit, LocalPlace, QueryScratch, TOUCHING, Touching};
 use crate::accel::Candidate;
@@ -20,9 +21,9 @@ pub struct HitRows {
     /// See [`Hit::t`].
     pub t: [f64; WIDTH],
     /// The primitive of the world; [`NONE`] where a ray meets nothing.
-    primitive: [u32; WIDTH],
-    inner: [u32; WIDTH],
-    place: [LocalPlace; WIDTH],
+    pub(super) primitive: [u32; WIDTH],
+    pub(super) inner: [u32; WIDTH],
+    pub(super) place: [LocalPlace; WIDTH],
 }
 
 impl HitRows {
@@ -101,7 +102,7 @@ impl<L: Lanes> Nearest<L> {
 
 /// What hits are compared by, see [`Touching::key`].
 #[inline(always)]
-fn key_of<L: Lanes>(t: L, along: L, is_opaque: bool) -> L {
+pub(super) fn key_of<L: Lanes>(t: L, along: L, is_opaque: bool) -> L {
     if is_opaque { t } else { t + (L::splat(TOUCHING) * t + along) }
 }
 
@@ -111,12 +112,6 @@ fn lane_of<L: Lanes>(number: L, lane: usize) -> f64 {
     let mut row = [0.0; WIDTH];
     number.store(&mut row, 0);
     row[lane]
-}
-
-/// Writes one lane of a number.
-#[inline(always)]
-fn with_lane<L: Lanes>(number: L, lane: usize, value: f64) -> L {
-    L::splat(value).or_where_not(Bits::lane(lane), number)
 }
 
 impl Geometry {
@@ -142,7 +137,7 @@ impl Geometry {
                 Primitive::Sphere(sphere) => LaneSpheres::from(sphere).intersect(&ray, infinity),
                 Primitive::Plane(plane) => LanePlanes::from(plane).intersect(&ray, infinity),
                 _ => {
-                    self.meet_one_by_one(index, is_opaque, rays, at, active, &mut nearest, hits, scratch);
+                    self.meet_others(Some(index), rays, at, active, &mut nearest, hits, scratch);
                     continue;
                 }
             };
@@ -165,7 +160,7 @@ impl Geometry {
                 }
             }
         } else if world.first_alone > 0 {
-            self.meet_bounded(rays, at, active, &mut nearest, hits, scratch);
+            self.meet_others(None, rays, at, active, &mut nearest, hits, scratch);
         }
 
         let mut index = [0.0; WIDTH];
@@ -180,13 +175,12 @@ impl Geometry {
         }
     }
 
-    /// The nearest hits with a primitive that is met by one ray at a time.
+    /// The nearest hits with a primitive that is no simple one, or where there is none, with all of the hierarchy.
     #[expect(clippy::too_many_arguments, reason = "a private step of the function above")]
-    #[inline(never)]
-    fn meet_one_by_one<L: Lanes>(
+    #[inline(always)]
+    fn meet_others<L: Lanes>(
         &self,
-        index: u32,
-        is_opaque: bool,
+        index: Option<u32>,
         rays: &RayRows,
         at: usize,
         active: Bits,
@@ -194,41 +188,57 @@ impl Geometry {
         hits: &mut HitRows,
         scratch: &mut QueryScratch,
     ) {
-        let primitive = &self.world.primitives[index as usize];
-        for lane in active.lanes() {
-            let ray = rays.ray(at + lane);
-            let touching = Touching::along(&ray);
-            let limit = lane_of(nearest.key, lane);
-            if let Some(hit) = self.meet_in_world(primitive, is_opaque, &ray, touching, limit, scratch)
-                && (hit.t() < limit || hit.t() == limit && nearest.without_hit().has(lane))
-            {
-                nearest.keep(lane, at, index, hit, hits);
-            }
+        if L::COUNT < WIDTH {
+            return self.meet_alone(index, rays, at, nearest, hits, scratch);
         }
+        let (mut key, mut before) = ([0.0; WIDTH], [0.0; WIDTH]);
+        nearest.key.store(&mut key, 0);
+        nearest.index.store(&mut before, 0);
+        nearest.t.store(&mut hits.t, 0);
+        // The number −1 becomes NONE: 32 bits, all set.
+        hits.primitive = before.map(|index| index as i64 as u32);
+        let group = &RayGroup::new(&rays.origin, &rays.direction);
+        let (geometry, space) = (self, &self.world);
+        let mut found = Found { key, hits, complex: nearest.complex };
+        match index {
+            Some(index) => self.meet_together::<L>(space, index, group, active, &mut found, scratch),
+            None => L::stage(NearestInSpace { geometry, space, group, active, found: &mut found, scratch }),
+        }
+        let index = found.hits.primitive.map(|index| if index == NONE { -1.0 } else { f64::from(index) });
+        nearest.key = L::load(&found.key, 0);
+        nearest.t = L::load(&found.hits.t, 0);
+        nearest.index = L::load(&index, 0);
+        nearest.complex = found.complex;
     }
 
-    /// The nearest hits with the primitives of the hierarchy.
+    /// The same for one ray.
     #[inline(never)]
-    fn meet_bounded<L: Lanes>(
+    fn meet_alone<L: Lanes>(
         &self,
+        index: Option<u32>,
         rays: &RayRows,
         at: usize,
-        active: Bits,
         nearest: &mut Nearest<L>,
         hits: &mut HitRows,
         scratch: &mut QueryScratch,
     ) {
-        for lane in active.lanes() {
-            let ray = rays.ray(at + lane);
-            let touching = Touching::along(&ray);
-            let limit = lane_of(nearest.key, lane);
-            if let Some((index, hit)) =
-                self.world.nearest_bounded(&ray, touching, limit, |primitive, is_opaque, limit| {
-                    self.meet_in_world(primitive, is_opaque, &ray, touching, limit, scratch)
-                })
-            {
-                nearest.keep(lane, at, index, hit, hits);
+        let ray = rays.ray(at);
+        let touching = Touching::along(&ray);
+        let limit = lane_of(nearest.key, 0);
+        let mut meet = |primitive: &Primitive, is_opaque, limit| {
+            self.meet_in(&self.world, primitive, is_opaque, &ray, touching, limit, scratch)
+        };
+        let found = match index {
+            None => self.world.nearest_bounded(&ray, touching, limit, meet),
+            Some(index) => {
+                let is_opaque = self.world.attributes[index as usize].is_opaque;
+                let hit = meet(&self.world.primitives[index as usize], is_opaque, limit);
+                let wins = |hit: &InnerHit| hit.t() < limit || hit.t() == limit && nearest.without_hit().any();
+                hit.filter(wins).map(|hit| (index, hit))
             }
+        };
+        if let Some((index, hit)) = found {
+            nearest.keep(at, index, &hit, hits);
         }
     }
 
@@ -275,23 +285,51 @@ impl Geometry {
                     }
                 }
                 _ => {
-                    for lane in open.lanes() {
-                        let (ray, distance) = (rows.ray(at + lane), rows.distance[at + lane]);
-                        let keep = |hit| blockers.hits.push((lane as u8, hit));
-                        if self.is_blocked_by(index, primitive, &ray, distance, any_blocks, keep, scratch) {
-                            blockers.blocked |= Bits::lane(lane);
-                        }
-                    }
+                    let blocked =
+                        self.block_others::<L>(Some(index), rows, at, open, any_blocks, &mut blockers.hits, scratch);
+                    blockers.blocked |= blocked;
                 }
             }
         }
         if world.handful.is_empty() && world.first_alone > 0 {
-            for lane in active.without(blockers.blocked).lanes() {
-                let (ray, distance) = (rows.ray(at + lane), rows.distance[at + lane]);
-                if self.is_blocked_by_bounded(&ray, distance, any_blocks, lane, &mut blockers.hits, scratch) {
-                    blockers.blocked |= Bits::lane(lane);
-                }
+            let open = active.without(blockers.blocked);
+            if open.any() {
+                let blocked = self.block_others::<L>(None, rows, at, open, any_blocks, &mut blockers.hits, scratch);
+                blockers.blocked |= blocked;
             }
+        }
+    }
+
+    /// Which shadow rays are blocked by a primitive that is no simple one, or where there is none, by those of the hierarchy.
+    #[expect(clippy::too_many_arguments, reason = "a private step of the function above")]
+    #[inline(always)]
+    fn block_others<L: Lanes>(
+        &self,
+        index: Option<u32>,
+        rows: &QuestionRows,
+        at: usize,
+        active: Bits,
+        any_blocks: bool,
+        hits: &mut Vec<(u8, Hit)>,
+        scratch: &mut QueryScratch,
+    ) -> Bits {
+        let (geometry, space, outer) = (self, &self.world, None);
+        if L::COUNT < WIDTH {
+            let (ray, distance) = (rows.ray(at), rows.distance[at]);
+            return Bits::all_if(match index {
+                None => self.is_blocked_by_bounded(&ray, distance, any_blocks, hits, scratch),
+                Some(index) => {
+                    let primitive = &space.primitives[index as usize];
+                    let keep = |hit| hits.push((0, hit));
+                    self.is_blocked_by(index, primitive, &ray, distance, any_blocks, keep, scratch)
+                }
+            }) & L::all();
+        }
+        let group = &RayGroup::new(&rows.origin, &rows.direction);
+        let shadows = &mut Shadows { distance: &rows.distance, any_blocks, hits, scratch };
+        match index {
+            Some(index) => self.block_together::<L>(space, outer, index, group, active, shadows),
+            None => L::stage(BlockedInSpace { geometry, space, outer, group, active, shadows }),
         }
     }
 
@@ -335,6 +373,11 @@ impl Geometry {
         let (mut spheres, mut planes) = (Bits::NONE, Bits::NONE);
         let (mut place, mut normal, mut radius) = ([[0.0; WIDTH]; 3], [[0.0; WIDTH]; 3], [1.0; WIDTH]);
         let mut unplaced = 0;
+        if !self.meshes.is_empty() {
+            for lane in met.lanes() {
+                self.prefetch_surface::<L>(hits, at + lane);
+            }
+        }
         for lane in met.lanes() {
             let index = hits.primitive[at + lane];
             surfaces.whole[at + lane] = None;
@@ -412,14 +455,14 @@ impl Geometry {
 }
 
 impl<L: Lanes> Nearest<L> {
-    /// Takes over one lane's hit that is no simple one.
-    fn keep(&mut self, lane: usize, at: usize, index: u32, hit: InnerHit, hits: &mut HitRows) {
-        self.key = with_lane(self.key, lane, hit.key);
-        self.t = with_lane(self.t, lane, hit.local.t);
-        self.index = with_lane(self.index, lane, f64::from(index));
-        self.complex |= Bits::lane(lane);
-        hits.inner[at + lane] = hit.inner;
-        hits.place[at + lane] = hit.local.place;
+    /// Takes over the hit of a lane that is the only one, and that is no simple one.
+    fn keep(&mut self, at: usize, index: u32, hit: &InnerHit, hits: &mut HitRows) {
+        self.key = L::splat(hit.key);
+        self.t = L::splat(hit.local.t);
+        self.index = L::splat(f64::from(index));
+        self.complex = L::all();
+        hits.inner[at] = hit.inner;
+        hits.place[at] = hit.local.place;
     }
 }
 

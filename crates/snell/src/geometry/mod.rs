@@ -6,6 +6,7 @@
 
 mod blockers;
 mod lanes;
+mod packets;
 mod placed;
 mod space;
 mod surfaces;
@@ -168,15 +169,17 @@ impl Geometry {
     pub fn intersect(&self, ray: &Ray, t_max: f64, scratch: &mut QueryScratch) -> Option<Hit> {
         let touching = Touching::along(ray);
         let found = self.world.nearest(ray, touching, t_max, |primitive, is_opaque, t_max| {
-            self.meet_in_world(primitive, is_opaque, ray, touching, t_max, scratch)
+            self.meet_in(&self.world, primitive, is_opaque, ray, touching, t_max, scratch)
         });
         found.map(|(primitive, InnerHit { inner, local, .. })| Hit { t: local.t, primitive, inner, place: local.place })
     }
 
-    /// The nearest hit with one primitive of the world, those at `t_max` included.
+    /// The nearest hit with one primitive of a space, those at `t_max` included.
+    #[expect(clippy::too_many_arguments, reason = "a private step of the function above")]
     #[inline]
-    fn meet_in_world(
+    fn meet_in(
         &self,
+        space: &Space,
         primitive: &Primitive,
         is_opaque: bool,
         ray: &Ray,
@@ -187,7 +190,7 @@ impl Geometry {
         if let Primitive::Instance { prototype, placement, .. } = primitive {
             return self.intersect_instance(*prototype, *placement, ray, touching, t_max, scratch);
         }
-        let local = self.intersect_primitive(&self.world, primitive, ray, 0.0, t_max.next_up(), scratch)?;
+        let local = self.intersect_primitive(space, primitive, ray, 0.0, t_max.next_up(), scratch)?;
         Some(touching.candidate(local, is_opaque))
     }
 
@@ -211,8 +214,7 @@ impl Geometry {
         let ray = self.world.placements[placement as usize].to_local(ray);
         let space = &self.prototypes[prototype as usize];
         let found = space.nearest(&ray, touching, t_max, |primitive, is_opaque, t_max| {
-            let local = self.intersect_primitive(space, primitive, &ray, 0.0, t_max.next_up(), scratch)?;
-            Some(touching.candidate(local, is_opaque))
+            self.meet_in(space, primitive, is_opaque, &ray, touching, t_max, scratch)
         });
         found.map(|(inner, hit)| InnerHit { inner, ..hit })
     }

@@ -1,5 +1,7 @@
 //! All questions against the plainest way to answer them: every object in a scene of its own, asked one after the other.
 
+mod packets;
+
 use snell_math::{Point3, Ray, Rgb, Transform, Vector3};
 use snell_scene::scene::{
     CsgOperation, Dielectric, Material, Medium, Mesh, Object, ObjectKind, Prototype, Scene, Shape, Texture,

@@ -159,6 +159,12 @@ impl<L: Lanes> LaneSpheres<L> {
         if self.surely_missed(ray) & L::all() == L::all() {
             return (Bits::NONE, t_max);
         }
+        self.intersect_likely(ray, t_max)
+    }
+
+    /// As [`LaneSpheres::intersect`], for spheres that are not among the many that are surely missed.
+    #[inline(always)]
+    pub(crate) fn intersect_likely(&self, ray: &LaneRay<L>, t_max: L) -> (Bits, L) {
         let (met, [enter, leave]) = self.span(ray);
         let zero = L::splat(0.0);
         let t = enter.or_where_not(enter.gt(zero), leave);

@@ -7,6 +7,7 @@
 mod blocks;
 mod many;
 mod queries;
+mod together;
 mod topology;
 mod watertight;
 

@@ -12,9 +12,10 @@
 //! m ± (r + δ).
 
 use snell_math::Point3;
-use snell_math::lanes::{Eight, WIDTH};
+use snell_math::lanes::{Eight, Floats, LaneVector, Lanes, WIDTH};
 
-use super::probe::{EPSILON, Probe};
+use super::probe::{EPSILON, Probe, splat};
+use super::probes::spread;
 use super::shared::{NONE, number};
 
 /// Eight balls.
@@ -41,6 +42,54 @@ impl BallBlock {
     }
 }
 
+/// Probes side by side, made ready for balls; see [`BallRay`].
+pub(super) struct BallLines {
+    origin: [[f32; WIDTH]; 3],
+    direction: [[f32; WIDTH]; 3],
+    scaled: [[f32; WIDTH]; 3],
+    error: [f32; WIDTH],
+}
+
+impl BallLines {
+    /// Of the probes' origins, directions and errors, and the tree's extent.
+    #[inline(always)]
+    pub(super) fn new<L: Lanes>(origin: LaneVector<L>, direction: LaneVector<L>, error: L, extent: f64) -> Self {
+        let rows = [[0.0; WIDTH]; 3];
+        let mut lines = Self { origin: rows, direction: rows, scaled: rows, error: [0.0; WIDTH] };
+        store(origin, &mut lines.origin);
+        store(direction, &mut lines.direction);
+        let rounded = LaneVector {
+            x: L::from_floats(direction.x.to_floats()),
+            y: L::from_floats(direction.y.to_floats()),
+            z: L::from_floats(direction.z.to_floats()),
+        };
+        store(rounded * (L::splat(1.0) / rounded.length_squared()), &mut lines.scaled);
+        let error = L::splat(128.0 * f64::from(EPSILON) * extent) + L::splat(4.0) * error;
+        error.to_floats().store(&mut lines.error, 0);
+        lines
+    }
+
+    /// One of them in all lanes.
+    #[inline(always)]
+    pub(super) fn spread<F: Eight>(&self, lane: usize) -> BallRay<F> {
+        let lane = lane & (WIDTH - 1);
+        BallRay {
+            origin: spread(&self.origin, lane),
+            direction: spread(&self.direction, lane),
+            scaled: spread(&self.scaled, lane),
+            error: F::splat(self.error[lane]),
+        }
+    }
+}
+
+/// Rounds vectors to rows of `f32`.
+#[inline(always)]
+fn store<L: Lanes>(v: LaneVector<L>, [x, y, z]: &mut [[f32; WIDTH]; 3]) {
+    v.x.to_floats().store(x, 0);
+    v.y.to_floats().store(y, 0);
+    v.z.to_floats().store(z, 0);
+}
+
 /// A probe in all lanes, for balls.
 #[derive(Clone, Copy)]
 pub(super) struct BallRay<F> {
@@ -59,9 +108,9 @@ impl<F: Eight> BallRay<F> {
         let squared = direction.iter().map(|x| x * x).sum::<f32>();
         let error = 128.0 * f64::from(EPSILON) * probe.extent + 4.0 * probe.error;
         Self {
-            origin: splat(probe.origin.map(|x| x as f32)),
-            direction: splat(direction),
-            scaled: splat(direction.map(|x| x / squared)),
+            origin: splat(&probe.origin.map(|x| x as f32)),
+            direction: splat(&direction),
+            scaled: splat(&direction.map(|x| x / squared)),
             error: F::splat(error as f32),
         }
     }
@@ -90,9 +139,4 @@ impl<F: Eight> BallRay<F> {
 #[inline(always)]
 fn dot<F: Eight>(a: [F; 3], b: [F; 3]) -> F {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
-fn splat<F: Eight>([x, y, z]: [f32; 3]) -> [F; 3] {
-    [F::splat(x), F::splat(y), F::splat(z)]
 }

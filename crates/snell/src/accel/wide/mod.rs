@@ -14,12 +14,15 @@
 
 mod balls;
 mod collapse;
+mod group;
 mod memory;
 mod path;
 mod primitives;
 mod probe;
+mod probes;
 mod shared;
 mod slabs;
+mod together;
 mod traverse;
 mod validate;
 
@@ -29,10 +32,12 @@ mod tests;
 pub use primitives::{Candidate, WideBvh};
 pub use validate::WideDefect;
 
+pub(crate) use group::{Finder, Seeker};
 pub(crate) use memory::roomy;
 pub(crate) use path::Path;
-pub(crate) use probe::{Approach, BoxLine, BoxRay, EPSILON, Probe, splat};
+pub(crate) use probe::{Approach, BoxLine, BoxRay, EPSILON, Probe, splat, widened_measure};
 pub(crate) use shared::{NONE, Visited, number};
+pub(crate) use together::{Group, PrimitiveFinder, PrimitiveSeeker};
 pub(crate) use traverse::take_lane;
 
 use snell_math::Bounds3;

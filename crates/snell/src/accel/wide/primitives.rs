@@ -52,7 +52,7 @@ pub struct WideBvh {
     /// Numbers of primitives, see [`WideTree::new`].
     pub(super) leaves: Vec<[u32; WIDTH]>,
     /// For each leaf its balls, where all primitives are balls; else none.
-    balls: Vec<BallBlock>,
+    pub(super) balls: Vec<BallBlock>,
     /// By what boxes are tested.
     set: InstructionSet,
 }

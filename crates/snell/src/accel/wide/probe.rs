@@ -22,19 +22,19 @@
 //! [`slabs`]: super::slabs
 
 use snell_math::Ray;
-use snell_math::lanes::Eight;
+use snell_math::lanes::{Eight, Floats, Lanes};
 
 use super::slabs::Slabs;
 use super::{WideNode, WideTree};
 
 /// 1 + 16 ε.
-const WIDER: f32 = 1.0 + 16.0 * EPSILON;
+pub(super) const WIDER: f32 = 1.0 + 16.0 * EPSILON;
 /// The relative rounding error of `f32`, 2⁻²⁴.
 pub const EPSILON: f32 = 0.5 * f32::EPSILON;
 /// The smallest component of a direction.
-const LEAST: f32 = 1.0 / (1_u64 << 40) as f32;
+pub(super) const LEAST: f32 = 1.0 / (1_u64 << 40) as f32;
 /// The extents of trees that are tested in `f32`.
-const EXTENTS: std::ops::RangeInclusive<f64> = 1.0 / (1_u64 << 40) as f64..=(1_u64 << 40) as f64;
+pub(super) const EXTENTS: std::ops::RangeInclusive<f64> = 1.0 / (1_u64 << 40) as f64..=(1_u64 << 40) as f64;
 
 /// A ray that starts where it enters a tree.
 #[derive(Clone, Copy, Debug)]
@@ -48,9 +48,9 @@ pub struct Probe {
     /// The new direction.
     pub direction: [f64; 3],
     /// One by the new direction, infinite where that is zero.
-    inverse: [f64; 3],
+    pub(super) inverse: [f64; 3],
     /// By how much boxes are grown on all sides.
-    margin: f64,
+    pub(super) margin: f64,
     /// A bound for the error of coordinates relative to the new origin that `f64` makes.
     pub error: f64,
     /// The tree's largest absolute coordinate.
@@ -111,6 +111,18 @@ fn smaller(a: f64, b: f64) -> f64 {
 }
 
 impl Probe {
+    /// What stands in for one where there is none.
+    pub const NOTHING: Self = Self {
+        start: 0.0,
+        scale: 1.0,
+        origin: [0.0; 3],
+        direction: [0.0; 3],
+        inverse: [0.0; 3],
+        margin: 0.0,
+        error: 0.0,
+        extent: 1.0,
+    };
+
     /// The measure of a ray parameter, enlarged: no entry up to there is computed to be beyond.
     #[inline(always)]
     pub fn limit(&self, t_max: f64) -> f32 {
@@ -133,6 +145,13 @@ impl Probe {
     pub fn widened(s: f32) -> f32 {
         s * WIDER
     }
+}
+
+/// As [`Probe::limit`], of measures (t − start) · scale side by side.
+#[inline(always)]
+pub fn widened_measure<L: Lanes>(s: L) -> L::Floats {
+    let (s, zero) = (s.to_floats() * L::Floats::splat(WIDER), L::Floats::splat(0.0));
+    s.or_where_not(zero.lt(s), zero)
 }
 
 /// A probe, made ready for box tests.
@@ -172,11 +191,11 @@ impl BoxLine {
 /// A [`BoxLine`] in all lanes.
 #[derive(Clone, Copy)]
 pub struct BoxRay<F> {
-    near_origin: [F; 3],
-    far_origin: [F; 3],
-    inverse: [F; 3],
-    far_inverse: [F; 3],
-    near_side: [usize; 3],
+    pub(super) near_origin: [F; 3],
+    pub(super) far_origin: [F; 3],
+    pub(super) inverse: [F; 3],
+    pub(super) far_inverse: [F; 3],
+    pub(super) near_side: [usize; 3],
 }
 
 impl<F: Eight> BoxRay<F> {

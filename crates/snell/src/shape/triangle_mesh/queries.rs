@@ -203,6 +203,31 @@ fn filled(block: &TriangleBlock) -> impl Iterator<Item = usize> {
     (0..WIDTH).take_while(|lane| block.triangles[*lane] != NONE)
 }
 
+/// Whether a ray meets a triangle of a block between two parameters. `limit` and `surely_before` are measures of the second.
+#[inline(always)]
+pub(super) fn is_met_in<F: Eight>(
+    block: &TriangleBlock,
+    ray: &BlockRay<F>,
+    space: &RaySpace,
+    limit: F,
+    surely_before: F,
+    t_min: f64,
+    t_max: f64,
+) -> bool {
+    let Some(verdict) = ray.look(block, limit) else { return false };
+    if verdict.sure & (F::splat(0.0).lt(verdict.low) & verdict.high.le(surely_before)).mask() != 0 {
+        return true;
+    }
+    let mut rest = verdict.sure | verdict.unsure;
+    while rest != 0 {
+        let meeting = space.meet(block.corners(take_lane(&mut rest)));
+        if meeting.is_some_and(|meeting| t_min < meeting.t && meeting.t <= t_max) {
+            return true;
+        }
+    }
+    false
+}
+
 struct Any<'a> {
     mesh: &'a TriangleMesh,
     probe: &'a Probe,
@@ -221,18 +246,8 @@ impl Work for Any<'_> {
         let surely_before = L::Eight::splat(probe.surely_before(t_max));
         let visit = |leaf: u32| {
             let block = &mesh.blocks[leaf as usize];
-            let Some(verdict) = triangles.look(block, L::Eight::splat(limit)) else { return ControlFlow::Continue(()) };
-            if verdict.sure & (L::Eight::splat(0.0).lt(verdict.low) & verdict.high.le(surely_before)).mask() != 0 {
-                return ControlFlow::Break(());
-            }
-            let mut rest = verdict.sure | verdict.unsure;
-            while rest != 0 {
-                let meeting = space.meet(block.corners(take_lane(&mut rest)));
-                if meeting.is_some_and(|meeting| t_min < meeting.t && meeting.t <= t_max) {
-                    return ControlFlow::Break(());
-                }
-            }
-            ControlFlow::Continue(())
+            let is_met = is_met_in(block, &triangles, space, L::Eight::splat(limit), surely_before, t_min, t_max);
+            if is_met { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
         mesh.tree.each(&boxes, limit, visit).is_break()
     }

@@ -39,6 +39,9 @@ pub(super) struct Meeting {
 }
 
 impl RaySpace {
+    /// What stands in for one where there is none.
+    pub(super) const NOTHING: Self = Self { origin: Point3::ORIGIN, axes: [0, 1, 2], shear: [0.0; 3] };
+
     /// `None` where the direction is zero or anything is not finite: such a ray meets nothing.
     #[inline]
     pub(super) fn new(ray: &Ray) -> Option<Self> {

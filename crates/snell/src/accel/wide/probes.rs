@@ -1,0 +1,137 @@
+//! [`Probe`]s of rays side by side: the same formulas and the same bounds on errors, a ray in each lane.
+
+use snell_math::lanes::{Bits, Eight, Floats, LaneVector, Lanes, WIDTH};
+
+use super::WideTree;
+use super::probe::{BoxRay, EXTENTS, LEAST, WIDER};
+
+/// As [`super::Probe`], a ray in each lane.
+#[derive(Clone, Copy)]
+pub(super) struct Probes<L> {
+    pub(super) start: L,
+    pub(super) scale: L,
+    pub(super) origin: LaneVector<L>,
+    pub(super) direction: LaneVector<L>,
+    inverse: LaneVector<L>,
+    margin: L,
+    pub(super) error: L,
+}
+
+/// The lanes whose sign is negative, that of zero as well.
+#[inline(always)]
+fn negative<L: Lanes>(x: L) -> Bits {
+    L::splat(1.0).copysign(x).lt(L::splat(0.0))
+}
+
+/// Componentwise reciprocals.
+#[inline(always)]
+fn reciprocal<L: Lanes>(v: LaneVector<L>) -> LaneVector<L> {
+    let one = L::splat(1.0);
+    LaneVector { x: one / v.x, y: one / v.y, z: one / v.z }
+}
+
+impl WideTree {
+    /// As [`WideTree::approach`], from t = 0 on: the lanes that are plain, and those that are strange.
+    #[inline(always)]
+    pub(super) fn approach_together<L: Lanes>(
+        &self,
+        from: LaneVector<L>,
+        along: LaneVector<L>,
+        active: Bits,
+        t_max: L,
+    ) -> (Probes<L>, Bits, Bits) {
+        let (extent, zero) = (L::splat(self.extent), L::splat(0.0));
+        let (reach, scale) = (from.max_abs(), along.max_abs());
+        let error = L::splat(1.0 / (1_u64 << 45) as f64) * (reach + extent);
+        let margin = L::splat(1.0 / (1_u64 << 21) as f64) * extent + error;
+        let mut plain = Bits::all_if(EXTENTS.contains(&self.extent))
+            & margin.lt(L::splat(0.125) * extent)
+            & L::splat(f64::MIN_POSITIVE).le(scale)
+            & scale.lt(L::splat(f64::INFINITY));
+        let inverse = reciprocal(along);
+        // Where it starts, and whether it gets there: as in `slabs.rs`.
+        let slack = L::splat(1.0 / (1_u64 << 48) as f64) * (reach + extent) + L::splat(f64::MIN_POSITIVE);
+        let (mut start, mut leave) = (zero, t_max);
+        let mut inside = Bits::all_if(true);
+        let [low, high] = self.bounds.corners;
+        let axes = [(from.x, along.x, inverse.x), (from.y, along.y, inverse.y), (from.z, along.z, inverse.z)];
+        for (axis, (from, along, inverse)) in axes.into_iter().enumerate() {
+            let (low, high) = (L::splat(f64::from(low[axis])), L::splat(f64::from(high[axis])));
+            inside &= low.le(from) & from.le(high);
+            // The inverse of a number that is too small is of no use.
+            plain &= along.same(zero) | L::splat(f64::MIN_POSITIVE).le(along.abs());
+            let (slack, back) = (slack.copysign(along), negative(along));
+            let near = (high.or_where_not(back, low) - (from + slack)) * inverse;
+            let far = (low.or_where_not(back, high) - (from - slack)) * inverse;
+            // So written, NaN changes nothing.
+            start = near.or_where_not(near.gt(start), start);
+            leave = far.or_where_not(far.lt(leave), leave);
+        }
+        let ahead = active & zero.le(t_max) & (inside | start.le(leave));
+        start = zero.or_where_not(inside, start);
+        let origin = from + along * start;
+        let LaneVector { x, y, z } = inverse;
+        let direction = along * x.abs().smaller(y.abs()).smaller(z.abs());
+        plain &= start.lt(L::splat(f64::INFINITY));
+        plain &= origin.max_abs().le(L::splat(1.5) * extent) & L::splat(0.5).le(direction.max_abs());
+        let probes = Probes { start, scale, origin, direction, inverse: inverse * scale, margin, error };
+        (probes, ahead & plain, ahead.without(plain))
+    }
+}
+
+/// As [`super::BoxLine`], in rows.
+pub(super) struct BoxLines {
+    near_origin: [[f32; WIDTH]; 3],
+    far_origin: [[f32; WIDTH]; 3],
+    inverse: [[f32; WIDTH]; 3],
+    far_inverse: [[f32; WIDTH]; 3],
+    /// The rays that go down on each axis, and meet the larger coordinate first.
+    negative: [Bits; 3],
+}
+
+impl BoxLines {
+    #[inline(always)]
+    pub(super) fn new<L: Lanes>(probes: &Probes<L>) -> Self {
+        let rows = [[0.0; WIDTH]; 3];
+        let mut lines =
+            Self { near_origin: rows, far_origin: rows, inverse: rows, far_inverse: rows, negative: [Bits::NONE; 3] };
+        let Probes { origin, direction, inverse, .. } = *probes;
+        let axes = [
+            (origin.x, direction.x, inverse.x),
+            (origin.y, direction.y, inverse.y),
+            (origin.z, direction.z, inverse.z),
+        ];
+        for (axis, (origin, direction, inverse)) in axes.into_iter().enumerate() {
+            // Of a tiny component the largest inverse that there may be, with its sign.
+            let magnitude = inverse.abs().smaller(L::splat(1.0 / f64::from(LEAST)));
+            let margin = probes.margin.copysign(direction);
+            let inverse = magnitude.copysign(direction).to_floats();
+            (origin + margin).to_floats().store(&mut lines.near_origin[axis], 0);
+            (origin - margin).to_floats().store(&mut lines.far_origin[axis], 0);
+            inverse.store(&mut lines.inverse[axis], 0);
+            (inverse * L::Floats::splat(WIDER)).store(&mut lines.far_inverse[axis], 0);
+            lines.negative[axis] = negative(direction);
+        }
+        lines
+    }
+
+    /// One of them in all lanes.
+    #[inline(always)]
+    pub(super) fn spread<F: Eight>(&self, lane: usize) -> BoxRay<F> {
+        let lane = lane & (WIDTH - 1);
+        BoxRay {
+            near_origin: spread(&self.near_origin, lane),
+            far_origin: spread(&self.far_origin, lane),
+            inverse: spread(&self.inverse, lane),
+            far_inverse: spread(&self.far_inverse, lane),
+            near_side: self.negative.map(|negative| usize::from(negative.has(lane))),
+        }
+    }
+}
+
+/// A column of three rows, each number in all lanes.
+#[inline(always)]
+pub(super) fn spread<F: Eight>([x, y, z]: &[[f32; WIDTH]; 3], lane: usize) -> [F; 3] {
+    let lane = lane & (WIDTH - 1);
+    [F::splat(x[lane]), F::splat(y[lane]), F::splat(z[lane])]
+}

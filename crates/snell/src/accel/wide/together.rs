@@ -1,0 +1,234 @@
+//! Rays side by side, made ready for a tree, and their questions to primitives that are known by number.
+
+use snell_math::lanes::{Bits, Eight, Floats, LaneVector, Lanes, WIDTH};
+
+use super::balls::BallLines;
+use super::group::{Finder, Seeker, column_of};
+use super::probe::{Probe, widened_measure};
+use super::probes::BoxLines;
+use super::shared::{NONE, number};
+use super::traverse::take_lane;
+use super::{WideBvh, WideTree};
+
+/// Up to eight rays, made ready for one tree: their [`Probe`]s and all that comes of these, in rows.
+pub struct Group {
+    /// Those that come near the tree, and are as most are.
+    pub plain: Bits,
+    /// Those that have to be asked for one by one.
+    pub strange: Bits,
+    /// How far each goes, measured as [`Probe::limit`] does.
+    pub limits: [f32; WIDTH],
+    /// See [`Probe::start`].
+    pub start: [f64; WIDTH],
+    /// See [`Probe::scale`].
+    pub scale: [f64; WIDTH],
+    origin: [[f64; WIDTH]; 3],
+    direction: [[f64; WIDTH]; 3],
+    error: [f64; WIDTH],
+    extent: f64,
+    pub(super) lines: BoxLines,
+}
+
+impl Group {
+    /// Of some rays, each from its origin up to a parameter of its own.
+    #[inline(always)]
+    pub fn new<L: Lanes>(
+        tree: &WideTree,
+        origin: LaneVector<L>,
+        direction: LaneVector<L>,
+        active: Bits,
+        t_max: &[f64; WIDTH],
+    ) -> Self {
+        let t_max = L::load(t_max, 0);
+        let (probes, plain, strange) = tree.approach_together(origin, direction, active, t_max);
+        let mut group = Self {
+            plain,
+            strange,
+            limits: [0.0; WIDTH],
+            start: [0.0; WIDTH],
+            scale: [0.0; WIDTH],
+            origin: [[0.0; WIDTH]; 3],
+            direction: [[0.0; WIDTH]; 3],
+            error: [0.0; WIDTH],
+            extent: tree.extent,
+            lines: BoxLines::new(&probes),
+        };
+        widened_measure((t_max - probes.start) * probes.scale).store(&mut group.limits, 0);
+        probes.start.store(&mut group.start, 0);
+        probes.scale.store(&mut group.scale, 0);
+        probes.origin.store(&mut group.origin, 0);
+        probes.direction.store(&mut group.direction, 0);
+        probes.error.store(&mut group.error, 0);
+        group
+    }
+
+    /// What is known of one ray, where it is a plain one; but it is good for no box test.
+    #[inline(always)]
+    pub fn probe(&self, lane: usize) -> Probe {
+        let lane = lane & (WIDTH - 1);
+        Probe {
+            start: self.start[lane],
+            scale: self.scale[lane],
+            origin: self.origin.map(|row| row[lane]),
+            direction: self.direction.map(|row| row[lane]),
+            error: self.error[lane],
+            extent: self.extent,
+            ..Probe::NOTHING
+        }
+    }
+
+    /// Lowers the limit of a ray to a parameter.
+    #[inline(always)]
+    pub fn limit(&self, lane: usize, t_max: f64) -> f32 {
+        let lane = lane & (WIDTH - 1);
+        Probe { start: self.start[lane], scale: self.scale[lane], ..Probe::NOTHING }.limit(t_max)
+    }
+}
+
+impl Group {
+    /// Gives the leaves of the tree that plain rays enter before their limits to the seeker.
+    #[inline(always)]
+    pub fn nearest_in<F: Eight>(&self, tree: &WideTree, limits: &mut [f32; WIDTH], seeker: &mut impl Seeker) {
+        tree.nearest_together::<F>(&self.lines, self.plain, limits, seeker);
+    }
+
+    /// Gives the leaves of the tree that plain rays enter before their limits to the finder, until it has enough.
+    #[inline(always)]
+    pub fn each_in<F: Eight>(&self, tree: &WideTree, finder: &mut impl Finder) {
+        tree.each_together::<F>(&self.lines, self.plain, &self.limits, finder);
+    }
+}
+
+/// What seeks the closest hits among primitives.
+pub trait PrimitiveSeeker {
+    /// Tests a primitive with some rays, and lowers their limits by what is found. Mark it `#[inline(always)]`.
+    fn primitive(&mut self, primitive: u32, rays: Bits, limits: &mut [f32; WIDTH]);
+}
+
+/// What asks primitives until it knows enough.
+pub trait PrimitiveFinder {
+    /// Tests a primitive with some rays; those that need not go on. Mark it `#[inline(always)]`.
+    fn primitive(&mut self, primitive: u32, rays: Bits) -> Bits;
+}
+
+/// What is known at a leaf.
+struct Leaves<'a> {
+    bvh: &'a WideBvh,
+    balls: BallLines,
+}
+
+impl<'a> Leaves<'a> {
+    #[inline(always)]
+    fn new<L: Lanes>(bvh: &'a WideBvh, group: &Group) -> Self {
+        let [origin, direction] = [&group.origin, &group.direction].map(|rows| LaneVector::load(rows, 0));
+        Self { bvh, balls: BallLines::new::<L>(origin, direction, L::load(&group.error, 0), group.extent) }
+    }
+
+    #[inline(always)]
+    fn prefetch<L: Lanes>(&self, leaf: u32) {
+        L::Eight::prefetch(&self.bvh.leaves[leaf as usize]);
+        if let Some(block) = self.bvh.balls.get(leaf as usize) {
+            L::Eight::prefetch(block);
+        }
+    }
+
+    /// For each ray a byte: the primitives of a leaf that it may meet before the limit; and all of them.
+    #[inline(always)]
+    fn candidates<L: Lanes>(&self, leaf: u32, rays: Bits, limits: &[f32; WIDTH]) -> (u64, u32) {
+        let Some(block) = self.bvh.balls.get(leaf as usize) else { return (u64::MAX, 0xFF) };
+        let (mut by_ray, mut any) = (0, 0);
+        let mut rest = rays.mask();
+        while rest != 0 {
+            let lane = take_lane(&mut rest);
+            let ray = self.balls.spread::<L::Eight>(lane);
+            let met = ray.look(block, L::Eight::splat(limits[lane]));
+            by_ray |= u64::from(met) << (8 * lane);
+            any |= met;
+        }
+        (by_ray, any)
+    }
+}
+
+struct SeekAtLeaves<'a, 's, L, S> {
+    leaves: Leaves<'a>,
+    seeker: &'s mut S,
+    lanes: std::marker::PhantomData<L>,
+}
+
+impl<L: Lanes, S: PrimitiveSeeker> Seeker for SeekAtLeaves<'_, '_, L, S> {
+    #[inline(always)]
+    fn prefetch(&self, leaf: u32) {
+        self.leaves.prefetch::<L>(leaf);
+    }
+
+    #[inline(always)]
+    fn leaf(&mut self, leaf: u32, rays: Bits, limits: &mut [f32; WIDTH]) {
+        let (by_ray, mut any) = self.leaves.candidates::<L>(leaf, rays, limits);
+        let entries = &self.leaves.bvh.leaves[leaf as usize];
+        while any != 0 {
+            let place = take_lane(&mut any);
+            if entries[place] == NONE {
+                return;
+            }
+            self.seeker.primitive(number(entries[place]), column_of(by_ray, place) & rays, limits);
+        }
+    }
+}
+
+struct FindAtLeaves<'a, 's, L, S> {
+    leaves: Leaves<'a>,
+    limits: [f32; WIDTH],
+    finder: &'s mut S,
+    lanes: std::marker::PhantomData<L>,
+}
+
+impl<L: Lanes, S: PrimitiveFinder> Finder for FindAtLeaves<'_, '_, L, S> {
+    #[inline(always)]
+    fn prefetch(&self, leaf: u32) {
+        self.leaves.prefetch::<L>(leaf);
+    }
+
+    #[inline(always)]
+    fn leaf(&mut self, leaf: u32, rays: Bits) -> Bits {
+        let (by_ray, mut any) = self.leaves.candidates::<L>(leaf, rays, &self.limits);
+        let entries = &self.leaves.bvh.leaves[leaf as usize];
+        let mut done = Bits::NONE;
+        while any != 0 {
+            let place = take_lane(&mut any);
+            if entries[place] == NONE {
+                break;
+            }
+            let asking = column_of(by_ray, place) & rays.without(done);
+            if asking.any() {
+                done |= self.finder.primitive(number(entries[place]), asking);
+            }
+        }
+        done
+    }
+}
+
+impl WideBvh {
+    /// The tree, to make rays ready for.
+    pub(crate) fn tree(&self) -> &WideTree {
+        &self.tree
+    }
+
+    /// Gives the primitives that the plain rays of a group may meet before their limits to the seeker, with these rays; the nearer
+    /// ones first, as far as boxes tell.
+    #[inline(always)]
+    pub(crate) fn nearest_together<L: Lanes>(&self, group: &Group, seeker: &mut impl PrimitiveSeeker) {
+        let mut seeker =
+            SeekAtLeaves::<L, _> { leaves: Leaves::new::<L>(self, group), seeker, lanes: std::marker::PhantomData };
+        let mut limits = group.limits;
+        group.nearest_in::<L::Eight>(&self.tree, &mut limits, &mut seeker);
+    }
+
+    /// Gives the primitives that the plain rays of a group may meet before their limits to the finder, with these rays, in no
+    /// particular order.
+    #[inline(always)]
+    pub(crate) fn each_together<L: Lanes>(&self, group: &Group, finder: &mut impl PrimitiveFinder) {
+        let (leaves, limits) = (Leaves::new::<L>(self, group), group.limits);
+        let mut finder = FindAtLeaves::<L, _> { leaves, limits, finder, lanes: std::marker::PhantomData };
+        group.each_in::<L::Eight>(&self.tree, &mut finder);
+    }
+}

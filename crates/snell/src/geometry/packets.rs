@@ -1,0 +1,445 @@
+//! Questions of rays side by side to what stands in hierarchies, to instances and to meshes: through the trees together.
+//!
+//! What a ray meets is what it meets alone: spheres are tested in all lanes by the code for one, triangles by the same tests, and
+//! everything else by one ray after the other. Of hits at the same distance the lowest primitive's wins, in whatever order they
+//! are found, so the way through the tree may be anybody's.
+
+use snell_math::lanes::{Bits, Floats, LaneVector, Lanes, WIDTH, Work};
+use snell_math::{Point3, Ray, Vector3};
+
+use super::lanes::{HitRows, key_of};
+use super::space::{NONE, Primitive, Space};
+use super::{Geometry, Hit, InnerHit, LocalHit, LocalPlace, QueryScratch, Touching};
+use crate::accel::wide::{Group, PrimitiveFinder, PrimitiveSeeker, widened_measure};
+use crate::shape::{LaneRay, LaneSpheres};
+use crate::task::{column, set_column};
+
+/// Rays side by side, in the space of what they are asked about.
+pub(super) struct RayGroup {
+    rays: [Ray; WIDTH],
+    origin: [[f64; WIDTH]; 3],
+    direction: [[f64; WIDTH]; 3],
+    /// See [`Touching`], in world units also where the rays are not.
+    along: [f64; WIDTH],
+}
+
+impl RayGroup {
+    /// Of rows of the world's rays.
+    #[inline(always)]
+    pub(super) fn new(origin: &[[f64; WIDTH]; 3], direction: &[[f64; WIDTH]; 3]) -> Self {
+        let rays = std::array::from_fn(|lane| {
+            Ray::new(Point3::from(column(origin, lane)), Vector3::from(column(direction, lane)))
+        });
+        let along = rays.map(|ray| Touching::along(&ray).0);
+        Self { rays, origin: *origin, direction: *direction, along }
+    }
+
+    /// The same, taken to a local space.
+    #[inline]
+    fn to_local(&self, placement: &super::Placement, active: Bits) -> Self {
+        let Self { mut rays, mut origin, mut direction, along } = *self;
+        for lane in active.lanes() {
+            rays[lane] = placement.to_local(&rays[lane]);
+            set_column(&mut origin, lane, rays[lane].origin.to_array());
+            set_column(&mut direction, lane, rays[lane].direction.to_array());
+        }
+        Self { rays, origin, direction, along }
+    }
+
+    #[inline(always)]
+    fn lanes<L: Lanes>(&self) -> LaneRay<L> {
+        LaneRay { origin: LaneVector::load(&self.origin, 0), direction: LaneVector::load(&self.direction, 0) }
+    }
+}
+
+/// The nearest hits that are known.
+pub(super) struct Found<'h> {
+    /// What hits are compared by, see [`Touching`]; the limit where there is none.
+    pub(super) key: [f64; WIDTH],
+    pub(super) hits: &'h mut HitRows,
+    /// The lanes whose hit is no simple one.
+    pub(super) complex: Bits,
+}
+
+impl Found<'_> {
+    /// Takes over a hit of one lane where it comes first.
+    #[inline]
+    fn take(&mut self, lane: usize, index: u32, hit: &InnerHit) {
+        let key = self.key[lane];
+        // No primitive is the last one of all.
+        if hit.key < key || hit.key == key && index < self.hits.primitive[lane] {
+            self.key[lane] = hit.key;
+            self.hits.t[lane] = hit.local.t;
+            self.hits.primitive[lane] = index;
+            self.hits.inner[lane] = hit.inner;
+            self.hits.place[lane] = hit.local.place;
+            self.complex |= Bits::lane(lane);
+        }
+    }
+
+    /// Takes over hits with a sphere where they come first; the lanes where they do.
+    #[inline(always)]
+    fn take_lanes<L: Lanes>(&mut self, index: u32, met: Bits, t: L, key: L) -> Bits {
+        let before = L::load(&self.key, 0);
+        let mut better = met & key.lt(before);
+        let mut same = met & key.same(before);
+        if same.any() {
+            for lane in same.lanes() {
+                if index >= self.hits.primitive[lane] {
+                    same = same.without(Bits::lane(lane));
+                }
+            }
+            better |= same;
+        }
+        if better.any() {
+            key.or_where_not(better, before).store(&mut self.key, 0);
+            t.or_where_not(better, L::load(&self.hits.t, 0)).store(&mut self.hits.t, 0);
+            for lane in better.lanes() {
+                self.hits.primitive[lane] = index;
+                self.hits.inner[lane] = NONE;
+                self.hits.place[lane] = LocalPlace::of_part(0);
+            }
+            self.complex = self.complex.without(better);
+        }
+        better
+    }
+}
+
+/// The question for the nearest hits with the primitives of a space's hierarchy.
+pub(super) struct NearestInSpace<'a, 'h> {
+    pub(super) geometry: &'a Geometry,
+    pub(super) space: &'a Space,
+    pub(super) group: &'a RayGroup,
+    pub(super) active: Bits,
+    pub(super) found: &'a mut Found<'h>,
+    pub(super) scratch: &'a mut QueryScratch,
+}
+
+struct NearestSeeker<'a, 'r, 'h, L> {
+    geometry: &'a Geometry,
+    space: &'a Space,
+    group: &'r RayGroup,
+    ready: &'r Group,
+    ray: LaneRay<L>,
+    along: L,
+    start: L,
+    scale: L,
+    found: &'r mut Found<'h>,
+    scratch: &'r mut QueryScratch,
+}
+
+impl Work for NearestInSpace<'_, '_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { geometry, space, group, active, found, scratch } = self;
+        let ray = group.lanes::<L>();
+        let ready = &Group::new(space.bvh.tree(), ray.origin, ray.direction, active, &found.key);
+        let mut seeker = NearestSeeker::<L> {
+            geometry,
+            space,
+            group,
+            ready,
+            ray,
+            along: L::load(&group.along, 0),
+            start: L::load(&ready.start, 0),
+            scale: L::load(&ready.scale, 0),
+            found,
+            scratch,
+        };
+        space.bvh.nearest_together::<L>(ready, &mut seeker);
+        for lane in ready.strange.lanes() {
+            let (ray, touching) = (&group.rays[lane], Touching(group.along[lane]));
+            let limit = found.key[lane];
+            let nearest = space.nearest_bounded(ray, touching, limit, |primitive, is_opaque, limit| {
+                geometry.meet_in(space, primitive, is_opaque, ray, touching, limit, scratch)
+            });
+            if let Some((index, hit)) = nearest {
+                found.take(lane, index, &hit);
+            }
+        }
+    }
+}
+
+impl<L: Lanes> PrimitiveSeeker for NearestSeeker<'_, '_, '_, L> {
+    #[inline(always)]
+    fn primitive(&mut self, index: u32, rays: Bits, limits: &mut [f32; WIDTH]) {
+        let primitive = &self.space.primitives[index as usize];
+        if let Primitive::Sphere(sphere) = primitive {
+            if rays.count() > 1 {
+                let (met, t) = LaneSpheres::from(sphere).intersect_likely(&self.ray, L::splat(f64::INFINITY));
+                let met = met & rays;
+                if met.any() {
+                    let is_opaque = self.space.attributes[index as usize].is_opaque;
+                    let key = key_of(t, self.along, is_opaque);
+                    let better = self.found.take_lanes(index, met, t, key);
+                    if better.any() {
+                        let measure = widened_measure((key - self.start) * self.scale);
+                        measure.or_where_not(better, L::Floats::load(limits, 0)).store(limits, 0);
+                    }
+                }
+                return;
+            }
+            let lane = rays.lowest() & (WIDTH - 1);
+            if let Some(hit) = sphere.intersect_likely(&self.group.rays[lane], 0.0, f64::INFINITY) {
+                let is_opaque = self.space.attributes[index as usize].is_opaque;
+                let hit = Touching(self.group.along[lane]).candidate(hit.into(), is_opaque);
+                self.found.take(lane, index, &hit);
+                limits[lane] = self.ready.limit(lane, self.found.key[lane]);
+            }
+            return;
+        }
+        self.geometry.meet_together::<L>(self.space, index, self.group, rays, self.found, self.scratch);
+        for lane in rays.lanes() {
+            limits[lane] = self.ready.limit(lane, self.found.key[lane]);
+        }
+    }
+}
+
+impl Geometry {
+    /// The nearest hits of rays with one primitive of a space, which may be any.
+    #[inline(never)]
+    pub(super) fn meet_together<L: Lanes>(
+        &self,
+        space: &Space,
+        index: u32,
+        group: &RayGroup,
+        rays: Bits,
+        found: &mut Found<'_>,
+        scratch: &mut QueryScratch,
+    ) {
+        let primitive = &space.primitives[index as usize];
+        match primitive {
+            Primitive::Instance { prototype, placement, .. }
+                if self.prototypes[*prototype as usize].handful.is_empty() =>
+            {
+                let inner = &self.prototypes[*prototype as usize];
+                let local = group.to_local(&space.placements[*placement as usize], rays);
+                let mut hits = HitRows::NOTHING;
+                let mut nearest = Found { key: found.key, hits: &mut hits, complex: Bits::NONE };
+                for alone in inner.first_alone..inner.primitives.len() {
+                    self.meet_together::<L>(inner, alone as u32, &local, rays, &mut nearest, scratch);
+                }
+                if inner.first_alone > 0 {
+                    let (geometry, found, group) = (self, &mut nearest, &local);
+                    L::stage(NearestInSpace { geometry, space: inner, group, active: rays, found, scratch });
+                }
+                let key = nearest.key;
+                for lane in rays.lanes().filter(|lane| hits.primitive[*lane] != NONE) {
+                    let local = LocalHit { t: hits.t[lane], place: hits.place[lane] };
+                    found.take(lane, index, &InnerHit { key: key[lane], inner: hits.primitive[lane], local });
+                }
+            }
+            Primitive::Mesh { mesh, .. } => {
+                let carried;
+                let group = match space.placement(primitive) {
+                    None => group,
+                    Some(placement) => {
+                        carried = group.to_local(placement, rays);
+                        &carried
+                    }
+                };
+                let is_opaque = space.attributes[index as usize].is_opaque;
+                let mut hits = [None; WIDTH];
+                let t_max = found.key.map(f64::next_up);
+                self.meshes[*mesh as usize].intersect_together::<L>(&group.rays, rays, &t_max, &mut hits);
+                for lane in rays.lanes() {
+                    if let Some(hit) = hits[lane] {
+                        self.meshes[*mesh as usize].prefetch_triangle::<L::Eight>(hit.triangle);
+                        found.take(lane, index, &Touching(group.along[lane]).candidate(hit.into(), is_opaque));
+                    }
+                }
+            }
+            _ => {
+                for lane in rays.lanes() {
+                    let (ray, touching) = (&group.rays[lane], Touching(group.along[lane]));
+                    let is_opaque = space.attributes[index as usize].is_opaque;
+                    let met = self.meet_in(space, primitive, is_opaque, ray, touching, found.key[lane], scratch);
+                    if let Some(hit) = met {
+                        found.take(lane, index, &hit);
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl Geometry {
+    /// Asks for the memory that working out a hit begins with.
+    #[inline(always)]
+    pub(super) fn prefetch_surface<L: Lanes>(&self, hits: &HitRows, lane: usize) {
+        let mut primitive = &self.world.primitives[hits.primitive[lane] as usize];
+        if let Primitive::Instance { prototype, .. } = primitive
+            && let Some(inner) = self.prototypes[*prototype as usize].primitives.get(hits.inner[lane] as usize)
+        {
+            primitive = inner;
+        }
+        if let Primitive::Mesh { mesh, .. } = primitive {
+            self.meshes[*mesh as usize].prefetch_corners::<L::Eight>(hits.place[lane].part);
+        }
+    }
+}
+
+/// The instance of the world through which a prototype is seen: its number, and the material that it hands on.
+pub(super) type Outer = Option<(u32, u32)>;
+
+/// What all questions of one row of shadow rays have in common.
+pub(super) struct Shadows<'a> {
+    pub(super) distance: &'a [f64; WIDTH],
+    pub(super) any_blocks: bool,
+    /// Meetings with transparent surfaces, each with its lane.
+    pub(super) hits: &'a mut Vec<(u8, Hit)>,
+    pub(super) scratch: &'a mut QueryScratch,
+}
+
+/// The question which rays are blocked by the primitives of a space's hierarchy.
+pub(super) struct BlockedInSpace<'a, 's> {
+    pub(super) geometry: &'a Geometry,
+    pub(super) space: &'a Space,
+    pub(super) outer: Outer,
+    pub(super) group: &'a RayGroup,
+    pub(super) active: Bits,
+    pub(super) shadows: &'a mut Shadows<'s>,
+}
+
+struct BlockedFinder<'a, 'r, 's, L> {
+    geometry: &'a Geometry,
+    space: &'a Space,
+    outer: Outer,
+    group: &'r RayGroup,
+    ray: LaneRay<L>,
+    distance: L,
+    blocked: Bits,
+    shadows: &'r mut Shadows<'s>,
+}
+
+impl Work for BlockedInSpace<'_, '_> {
+    type Output = Bits;
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Bits {
+        let Self { geometry, space, outer, group, active, shadows } = self;
+        let ray = group.lanes::<L>();
+        let ready = &Group::new(space.bvh.tree(), ray.origin, ray.direction, active, shadows.distance);
+        let distance = L::load(shadows.distance, 0);
+        let mut finder =
+            BlockedFinder::<L> { geometry, space, outer, group, ray, distance, blocked: Bits::NONE, shadows };
+        space.bvh.each_together::<L>(ready, &mut finder);
+        let mut blocked = finder.blocked;
+        for lane in ready.strange.lanes() {
+            let (ray, distance) = (&group.rays[lane], shadows.distance[lane]);
+            let is_blocked = space
+                .bvh
+                .any(ray, distance, |index| geometry.is_blocked_alone(space, outer, index, ray, lane, shadows));
+            if is_blocked {
+                blocked |= Bits::lane(lane);
+            }
+        }
+        blocked
+    }
+}
+
+impl<L: Lanes> PrimitiveFinder for BlockedFinder<'_, '_, '_, L> {
+    #[inline(always)]
+    fn primitive(&mut self, index: u32, rays: Bits) -> Bits {
+        let blocks_all = self.shadows.any_blocks || self.space.attributes[index as usize].is_opaque;
+        let blocked = match &self.space.primitives[index as usize] {
+            Primitive::Sphere(sphere) if blocks_all => {
+                if rays.count() > 1 {
+                    LaneSpheres::from(sphere).intersect_likely(&self.ray, self.distance).0 & rays
+                } else {
+                    let lane = rays.lowest() & (WIDTH - 1);
+                    let (ray, distance) = (&self.group.rays[lane], self.shadows.distance[lane]);
+                    if sphere.intersect_likely(ray, 0.0, distance).is_some() { rays } else { Bits::NONE }
+                }
+            }
+            _ => self.geometry.block_together::<L>(self.space, self.outer, index, self.group, rays, self.shadows),
+        };
+        self.blocked |= blocked;
+        blocked
+    }
+}
+
+impl Geometry {
+    /// Which rays are blocked by one primitive of a space, which may be any; what they meet of transparent ones is gathered.
+    #[inline(never)]
+    pub(super) fn block_together<L: Lanes>(
+        &self,
+        space: &Space,
+        outer: Outer,
+        index: u32,
+        group: &RayGroup,
+        rays: Bits,
+        shadows: &mut Shadows<'_>,
+    ) -> Bits {
+        let primitive = &space.primitives[index as usize];
+        match primitive {
+            Primitive::Instance { prototype, placement, material }
+                if self.prototypes[*prototype as usize].handful.is_empty() =>
+            {
+                let inner = &self.prototypes[*prototype as usize];
+                let local = group.to_local(&space.placements[*placement as usize], rays);
+                let outer = Some((index, *material));
+                let mut blocked = Bits::NONE;
+                for alone in inner.first_alone..inner.primitives.len() {
+                    let open = rays.without(blocked);
+                    if open.any() {
+                        blocked |= self.block_together::<L>(inner, outer, alone as u32, &local, open, shadows);
+                    }
+                }
+                let active = rays.without(blocked);
+                if inner.first_alone > 0 && active.any() {
+                    blocked |= L::stage(BlockedInSpace {
+                        geometry: self,
+                        space: inner,
+                        outer,
+                        group: &local,
+                        active,
+                        shadows,
+                    });
+                }
+                blocked
+            }
+            Primitive::Mesh { mesh, .. } if shadows.any_blocks || space.attributes[index as usize].is_opaque => {
+                let carried;
+                let group = match space.placement(primitive) {
+                    None => group,
+                    Some(placement) => {
+                        carried = group.to_local(placement, rays);
+                        &carried
+                    }
+                };
+                self.meshes[*mesh as usize].any_together::<L>(&group.rays, rays, shadows.distance)
+            }
+            _ => {
+                let mut blocked = Bits::NONE;
+                for lane in rays.lanes() {
+                    if self.is_blocked_alone(space, outer, index, &group.rays[lane], lane, shadows) {
+                        blocked |= Bits::lane(lane);
+                    }
+                }
+                blocked
+            }
+        }
+    }
+
+    /// Whether one ray is blocked by one primitive of a space.
+    fn is_blocked_alone(
+        &self,
+        space: &Space,
+        outer: Outer,
+        index: u32,
+        ray: &Ray,
+        lane: usize,
+        shadows: &mut Shadows<'_>,
+    ) -> bool {
+        let Shadows { distance, any_blocks, hits, scratch } = shadows;
+        let (primitive, distance) = (&space.primitives[index as usize], distance[lane]);
+        let keep = |hit| hits.push((lane as u8, hit));
+        match outer {
+            None => self.is_blocked_by(index, primitive, ray, distance, *any_blocks, keep, scratch),
+            Some(outer) => {
+                self.is_blocked_inside(space, outer, index, primitive, ray, distance, *any_blocks, keep, scratch)
+            }
+        }
+    }
+}
