@@ -22,6 +22,7 @@ const INTERVAL: Duration = Duration::from_millis(100);
 pub struct RenderProgress {
     counts: Arc<Counts>,
     interrupt: Interrupt,
+    end: Option<Instant>,
     painter: Option<(Sender<()>, JoinHandle<()>)>,
 }
 
@@ -35,14 +36,16 @@ struct Counts {
 
 impl RenderProgress {
     /// Begins; shown on standard error where that is a terminal and `visible`.
-    pub fn start(interrupt: Interrupt, visible: bool) -> Self {
+    /// No further pass is wanted once `time` is over.
+    pub fn start(interrupt: Interrupt, visible: bool, time: Option<Duration>) -> Self {
+        let end = time.and_then(|time| Instant::now().checked_add(time));
         let counts = Arc::new(Counts::default());
         let painter = (visible && std::io::stderr().is_terminal()).then(|| {
             let (sender, receiver) = mpsc::channel();
             let (counts, interrupt) = (counts.clone(), interrupt.clone());
             (sender, thread::spawn(move || paint(&counts, &interrupt, &receiver)))
         });
-        Self { counts, interrupt, painter }
+        Self { counts, interrupt, end, painter }
     }
 
     /// The share of the picture's pixels that have a sample, in percent.
@@ -67,6 +70,10 @@ impl Progress for RenderProgress {
     fn advance(&self, pixels: u64, rays: u64) {
         self.counts.pixels_done.fetch_add(pixels, Ordering::Relaxed);
         self.counts.rays.fetch_add(rays, Ordering::Relaxed);
+    }
+
+    fn wants_more(&self) -> bool {
+        self.end.is_none_or(|end| Instant::now() < end)
     }
 
     fn is_cancelled(&self) -> bool {
@@ -155,7 +162,7 @@ mod tests {
 
     #[test]
     fn pixels_and_rays_add_up() {
-        let progress = RenderProgress::start(Interrupt::default(), false);
+        let progress = RenderProgress::start(Interrupt::default(), false, None);
         assert_eq!(progress.percent_covered(), 0);
         progress.pass(0, 200);
         progress.advance(30, 90);

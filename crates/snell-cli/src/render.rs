@@ -3,11 +3,11 @@
 use std::time::Duration;
 
 use snell::compile::CompiledScene;
-use snell::render::{RenderSettings, Rendering, render};
+use snell::render::{PathSettings, RenderSettings, Rendering, render, render_paths};
 use snell::scene::reader::nff;
 use snell::scene::{Diagnostic, Diagnostics, Scene};
 
-use crate::arguments::{Preset, RenderArguments};
+use crate::arguments::{IntegratorName, Preset, RenderArguments};
 use crate::assets::FileAssets;
 use crate::builtin;
 use crate::console::{quoted, say, write_stdout};
@@ -20,6 +20,9 @@ use crate::preview::{self, Kind};
 use crate::progress::RenderProgress;
 use crate::settings;
 use crate::statistics::{Report, Stopwatch, Times, advice, seconds_text};
+
+/// Samples of a pixel where something else is to end them.
+const MOST_SAMPLES: u32 = 1 << 24;
 
 /// Renders as the command line says, and returns the exit code.
 pub fn run(arguments: &RenderArguments, mut watch: Stopwatch) -> Result<u8, Failure> {
@@ -43,9 +46,13 @@ pub fn run(arguments: &RenderArguments, mut watch: Stopwatch) -> Result<u8, Fail
 
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::input(Diagnostic::error(format!("signals cannot be listened to: {error}"))))?;
-    let progress = RenderProgress::start(interrupt.clone(), !arguments.quiet);
-    let rendering = render(&compiled, &settings, &progress)
-        .map_err(|error| Failure::input(Diagnostic::error(error.to_string())))?;
+    let paths = path_settings(arguments)?;
+    let progress = RenderProgress::start(interrupt.clone(), !arguments.quiet, arguments.time);
+    let rendered = match &paths {
+        Some(paths) => render_paths(&compiled, &settings, paths, &progress),
+        None => render(&compiled, &settings, &progress),
+    };
+    let rendering = rendered.map_err(|error| Failure::input(Diagnostic::error(error.to_string())))?;
     let covered = progress.percent_covered();
     drop(progress);
     let render = watch.lap();
@@ -123,6 +130,36 @@ pub fn compile(scene: &Scene, told: &mut Diagnostics) -> Result<CompiledScene, F
 fn render_settings(arguments: &RenderArguments, scene: &Scene) -> RenderSettings {
     let defaults = RenderSettings::from(&scene.settings);
     RenderSettings { tile_size: arguments.tile.unwrap_or(defaults.tile_size), layers: arguments.layers, ..defaults }
+}
+
+/// How paths are traced; `None` where they are not.
+fn path_settings(arguments: &RenderArguments) -> Result<Option<PathSettings>, Failure> {
+    let RenderArguments { samples, noise, time, seed, no_photons, .. } = arguments;
+    if arguments.integrator != Some(IntegratorName::Path) {
+        let flags = [
+            ("--samples", samples.is_some()),
+            ("--noise", noise.is_some()),
+            ("--time", time.is_some()),
+            ("--seed", seed.is_some()),
+            ("--no-photons", *no_photons),
+        ];
+        return match flags.into_iter().find(|(_, is_given)| *is_given) {
+            None => Ok(None),
+            Some((flag, _)) => {
+                let message = format!("{flag} is for path tracing, and this picture is rendered by `whitted`");
+                Err(Failure::usage(Diagnostic::error(message).help("add --integrator path, or leave it out")))
+            }
+        };
+    }
+    let defaults = PathSettings::default();
+    let without_end = if noise.is_some() || time.is_some() { MOST_SAMPLES } else { defaults.samples };
+    Ok(Some(PathSettings {
+        samples: samples.unwrap_or(without_end),
+        noise: *noise,
+        photons: !no_photons,
+        depth: arguments.depth.and_then(|depth| u16::try_from(depth).ok()).unwrap_or(defaults.depth),
+        seed: seed.unwrap_or(defaults.seed),
+    }))
 }
 
 /// `wrote x.png (1024x768, 0.21 s)`.

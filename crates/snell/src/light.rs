@@ -19,6 +19,15 @@ enum Place {
     Spot { position: Point3, axis: Vector3, cosine_cone: f64, cosine_full: f64 },
 }
 
+/// Where a light without extent is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LightOrigin {
+    /// At a point of the world.
+    Point(Point3),
+    /// Infinitely far away in a direction of unit length.
+    Direction(Vector3),
+}
+
 /// What one light sends to one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Illumination {
@@ -58,6 +67,46 @@ impl Light {
         Self { place, intensity: light.intensity, falloff: light.falloff }
     }
 
+    /// Its colour times its strength, as the scene gives it.
+    pub fn intensity(&self) -> Rgb {
+        self.intensity
+    }
+
+    /// Where it is; the direction towards it for a directional one.
+    pub fn origin(&self) -> LightOrigin {
+        match self.place {
+            Place::Point { position } | Place::Spot { position, .. } => LightOrigin::Point(position),
+            Place::Directional { to_light } => LightOrigin::Direction(to_light),
+        }
+    }
+
+    /// The share of its strength that it sends in a direction, of unit length: 1 but for the cone of a spot.
+    pub fn share_in(&self, direction: Vector3) -> f64 {
+        match self.place {
+            Place::Point { .. } | Place::Directional { .. } => 1.0,
+            Place::Spot { axis, cosine_cone, cosine_full, .. } => {
+                let cosine = axis.dot(direction);
+                if cosine <= cosine_cone {
+                    0.0
+                } else if cosine < cosine_full {
+                    let x = (cosine - cosine_cone) / (cosine_full - cosine_cone);
+                    x * x * (3.0 - 2.0 * x)
+                } else {
+                    1.0
+                }
+            }
+        }
+    }
+
+    /// What is left of its strength at a distance, times the square of that distance: over what the spreading of rays does by
+    /// itself. 1 for a light that falls off as real light does, and for a directional one.
+    pub fn spread_at(&self, distance: f64) -> f64 {
+        match (&self.place, self.falloff) {
+            (Place::Directional { .. }, _) | (_, scene::Falloff::InverseSquare) => 1.0,
+            _ => self.falloff_lanes(distance) * (distance * distance),
+        }
+    }
+
     /// What arrives at a world point; `None` where it is nothing: outside a spot's cone, or at the light itself.
     #[inline]
     pub fn illuminate(&self, point: Point3) -> Option<Illumination> {
@@ -83,16 +132,7 @@ impl Light {
         let distance = offset.length_squared().sqrt();
         let mut lit = L::all().without(distance.le(zero));
         let to_light = offset * (one / distance);
-        let mut share = match self.falloff {
-            scene::Falloff::None => one,
-            scene::Falloff::Linear => one / distance,
-            scene::Falloff::InverseSquare => one / (distance * distance),
-            scene::Falloff::Polynomial { constant, linear, quadratic } => {
-                let (constant, linear, quadratic) = (L::splat(constant), L::splat(linear), L::splat(quadratic));
-                let share = one / (constant + distance * (linear + distance * quadratic));
-                share.or_where_not(share.lt(one), one)
-            }
-        };
+        let mut share = self.falloff_lanes(distance);
         if let Place::Spot { axis, cosine_cone, cosine_full, .. } = self.place {
             let cosine = -LaneVector::splat(axis.to_array()).dot(to_light);
             lit = lit.without(cosine.le(L::splat(cosine_cone)));
@@ -103,6 +143,21 @@ impl Light {
             }
         }
         (lit, LaneIllumination { to_light, distance, irradiance: intensity * share.to_floats() })
+    }
+
+    #[inline(always)]
+    fn falloff_lanes<L: Lanes>(&self, distance: L) -> L {
+        let one = L::splat(1.0);
+        match self.falloff {
+            scene::Falloff::None => one,
+            scene::Falloff::Linear => one / distance,
+            scene::Falloff::InverseSquare => one / (distance * distance),
+            scene::Falloff::Polynomial { constant, linear, quadratic } => {
+                let (constant, linear, quadratic) = (L::splat(constant), L::splat(linear), L::splat(quadratic));
+                let share = one / (constant + distance * (linear + distance * quadratic));
+                share.or_where_not(share.lt(one), one)
+            }
+        }
     }
 }
 

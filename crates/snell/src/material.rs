@@ -281,6 +281,34 @@ impl Material {
         self.textured.iter().fold(Spaces::default(), |all, &(_, texture)| all.union(textures.spaces(texture)))
     }
 
+    /// True where it gives off light, somewhere at least.
+    pub fn emits(&self) -> bool {
+        !self.base.emission.is_black() || self.textured.iter().any(|(slot, _)| *slot == Slot::Emission)
+    }
+
+    /// True where lights matter, somewhere at least.
+    pub fn is_lit(&self) -> bool {
+        let is_textured = |(slot, _): &(Slot, _)| matches!(slot, Slot::Diffuse | Slot::Specular);
+        self.base.is_lit() || self.textured.iter().any(is_textured)
+    }
+
+    /// True where it mirrors or bends light, somewhere at least.
+    pub fn is_specular(&self) -> bool {
+        let bends = self.body.as_ref().is_some_and(|body| body.ior != snell_math::Dispersion::Constant(1.0));
+        bends || !self.base.mirror.is_black() || self.textured.iter().any(|(slot, _)| *slot == Slot::Mirror)
+    }
+
+    /// Its light, where it is the same everywhere.
+    pub fn constant_emission(&self) -> Option<Rgb> {
+        let is_textured = self.textured.iter().any(|(slot, _)| *slot == Slot::Emission);
+        (!is_textured).then_some(self.base.emission)
+    }
+
+    /// True where it is lit and shines on its outward side alone.
+    pub fn is_one_sided(&self) -> bool {
+        self.base.one_sided
+    }
+
     /// The lobes, where they are the same at all hits without a vertex colour.
     #[inline]
     pub fn constant_bsdf(&self) -> Option<&Bsdf> {

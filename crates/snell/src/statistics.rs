@@ -11,6 +11,8 @@ pub struct Statistics {
     pub reflected_rays: u64,
     /// Rays spawned by refraction.
     pub refracted_rays: u64,
+    /// Rays that paths took on by surfaces that are no mirrors, or in media that scatter.
+    pub scattered_rays: u64,
     /// Rays towards lights: one for each light on the lit side of a point. They count also where nothing depends on the
     /// answer, because the surface would not send the light to the viewer, and none is traced.
     pub shadow_rays: u64,
@@ -42,7 +44,7 @@ impl Statistics {
 
     /// All rays that were traced, towards lights included.
     pub fn rays(&self) -> u64 {
-        self.camera_rays + self.reflected_rays + self.refracted_rays + self.shadow_rays
+        self.camera_rays + self.reflected_rays + self.refracted_rays + self.scattered_rays + self.shadow_rays
     }
 
     /// Adds the counts of another part of the picture.
@@ -50,6 +52,7 @@ impl Statistics {
         self.camera_rays += other.camera_rays;
         self.reflected_rays += other.reflected_rays;
         self.refracted_rays += other.refracted_rays;
+        self.scattered_rays += other.scattered_rays;
         self.shadow_rays += other.shadow_rays;
         self.max_depth = self.max_depth.max(other.max_depth);
         self.total_internal_reflections += other.total_internal_reflections;

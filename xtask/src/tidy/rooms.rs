@@ -60,6 +60,8 @@ const ROOMS: &[Room] = &[
     Room {
         name: "integrator",
         may_use: &[
+            // Lights are surfaces that are sampled.
+            "shape",
             "optics",
             "texture",
             "light",

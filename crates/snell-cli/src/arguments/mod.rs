@@ -4,6 +4,7 @@ mod drawing;
 mod glass;
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::builder::RangedU64ValueParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -132,6 +133,10 @@ pub struct RenderArguments {
     #[arg(long, help_heading = "Picture")]
     pub layers: bool,
 
+    /// How light is followed: `whitted` as the lecture has it; `path` as it is, with light that comes through glass
+    #[arg(long, value_name = "whitted|path", hide_possible_values = true, help_heading = "Rendering")]
+    pub integrator: Option<IntegratorName>,
+
     /// Depth of the deepest ray; a camera ray has 1
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     #[arg(help_heading = "Rendering")]
@@ -153,6 +158,27 @@ pub struct RenderArguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     #[arg(help_heading = "Rendering")]
     pub bands: Option<u32>,
+
+    /// Most samples of a pixel by `path` [default: 64; as many as it takes with --noise or --time]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    #[arg(help_heading = "Paths")]
+    pub samples: Option<u32>,
+
+    /// Finish pixels whose error is below this share of their brightness
+    #[arg(long, value_name = "SHARE", value_parser = noise, help_heading = "Paths")]
+    pub noise: Option<f64>,
+
+    /// Begin no further sample after this time, such as 30s or 5min
+    #[arg(long, value_name = "TIME", value_parser = time, help_heading = "Paths")]
+    pub time: Option<Duration>,
+
+    /// Leave light that comes through glass to chance: lights send out nothing
+    #[arg(long, help_heading = "Paths")]
+    pub no_photons: bool,
+
+    /// What random numbers depend on
+    #[arg(long, value_name = "N", help_heading = "Paths")]
+    pub seed: Option<u32>,
 
     /// Threads [default: one for each core]
     #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
@@ -222,6 +248,13 @@ impl From<ToneName> for Tone {
     }
 }
 
+/// Names of `--integrator`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum IntegratorName {
+    Whitted,
+    Path,
+}
+
 /// Names of `--shadows`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ShadowsName {
@@ -274,6 +307,31 @@ fn exposure(text: &str) -> Result<f32, String> {
 
 fn share(text: &str) -> Result<f32, String> {
     number_in(text, 0.0, 1.0)
+}
+
+fn noise(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if value > 0.0 && value <= 1.0 => Ok(value),
+        _ => Err("a number above 0 and up to 1 is needed, such as 0.01".to_owned()),
+    }
+}
+
+/// `30s`, `5min`, `1.5h`, `500ms`; a number alone is in seconds.
+fn time(text: &str) -> Result<Duration, String> {
+    let unit_at = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
+    let (number, unit) = text.split_at(unit_at);
+    let factor = match unit.trim() {
+        "ms" => Some(1e-3),
+        "" | "s" => Some(1.0),
+        "m" | "min" => Some(60.0),
+        "h" => Some(3600.0),
+        _ => None,
+    };
+    let seconds = number.trim().parse::<f64>().ok().zip(factor).map(|(number, factor)| number * factor);
+    seconds
+        .filter(|seconds| (0.0..=1e8).contains(seconds))
+        .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
+        .ok_or_else(|| "a time is needed, such as 30s, 5min or 2h".to_owned())
 }
 
 fn number_in(text: &str, least: f32, most: f32) -> Result<f32, String> {

@@ -5,6 +5,7 @@
 //! compiled, so most rays are never transformed.
 
 mod blockers;
+mod emitting;
 mod lanes;
 mod packets;
 mod placed;
@@ -15,6 +16,7 @@ mod tests;
 
 use snell_math::{Point3, Ray, Rgb, Vector3};
 
+pub use emitting::EmittingSurface;
 pub(crate) use lanes::Blockers;
 pub use lanes::HitRows;
 pub(crate) use placed::Placement;

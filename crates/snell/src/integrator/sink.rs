@@ -240,11 +240,7 @@ impl<O: Observer> Sink<'_, O> {
     #[inline(always)]
     pub fn spawn<L: Lanes>(&mut self, parents: &ShadedRays<'_>, followed: Bits, spawn: &Spawn<'_, L>) {
         let count = u64::from(followed.count());
-        match spawn.kind {
-            RayKind::Reflected => self.statistics.reflected_rays += count,
-            RayKind::Refracted => self.statistics.refracted_rays += count,
-            RayKind::Camera => self.statistics.camera_rays += count,
-        }
+        self.count_ray(spawn.kind, count);
         let mut ids = [0; WIDTH];
         let mut queues = [0; WIDTH];
         for lane in followed.lanes() {
@@ -309,6 +305,63 @@ impl<O: Observer> Sink<'_, O> {
         let queue = self.take_queue(task.sample);
         self.next[queue].push(&task);
         self.observer.ray(&task);
+    }
+
+    /// The depth of the deepest ray.
+    #[inline]
+    pub fn depth(&self) -> u16 {
+        self.rules.depth
+    }
+
+    /// Adds a term to the sample of one ray, its throughput in it.
+    #[inline]
+    pub fn add_one(&mut self, task: &RayTask, term: Term, share: Rgb) {
+        self.sums.add_one(task.sample, share);
+        self.observer.term(task.id, term, share);
+    }
+
+    /// Sends a path on by one ray, one deeper than its parent.
+    #[inline]
+    pub fn send(&mut self, parent: &RayTask, kind: RayKind, ray: Ray, media: MediumStack) {
+        self.count_ray(kind, 1);
+        let depth = parent.depth + 1;
+        self.statistics.max_depth = self.statistics.max_depth.max(u32::from(depth));
+        let id = self.take_id();
+        let task = RayTask { ray, media, id, parent: parent.id, depth, passes: 0, kind, ..*parent };
+        let queue = self.take_queue(task.sample);
+        self.next[queue].push(&task);
+        self.observer.ray(&task);
+    }
+
+    /// Tells that a path was not followed, and what it carried.
+    pub fn cut_path(&mut self, task: &RayTask, why: Cut, weight: Rgb) {
+        self.cut(task.id, why, weight);
+    }
+
+    /// As [`Sink::ask`], of a question whose answer is known: its terms are what arrives.
+    pub fn answer(&mut self, question: &ShadowQuestion, arrives: bool) {
+        self.statistics.shadow_rays += 1;
+        self.observer.shadow(question, if arrives { Rgb::WHITE } else { Rgb::BLACK });
+        if !arrives {
+            return;
+        }
+        for (term, share) in question.terms {
+            if !share.is_black() {
+                self.sums.add_one(question.sample, share);
+                self.observer.term(question.task, term, share);
+            }
+        }
+    }
+
+    /// Counts rays by what made them.
+    #[inline(always)]
+    fn count_ray(&mut self, kind: RayKind, count: u64) {
+        match kind {
+            RayKind::Reflected => self.statistics.reflected_rays += count,
+            RayKind::Refracted => self.statistics.refracted_rays += count,
+            RayKind::Scattered => self.statistics.scattered_rays += count,
+            RayKind::Camera => self.statistics.camera_rays += count,
+        }
     }
 
     #[inline(always)]

@@ -10,8 +10,8 @@ use snell_math::{Ray, Rgb, Vector3};
 use snell_scene::scene::Medium;
 
 use super::dispersion::Dispersion;
-use super::{Integrator, LaneQuestions, ShadedRays, Sink, Spawn, scattering};
-use crate::camera::{Camera, Projection, Window};
+use super::{Integrator, LaneQuestions, ShadedRays, Sink, Spawn, scattering, view_of};
+use crate::camera::{Camera, Projection};
 use crate::compile::CompiledScene;
 use crate::geometry::{Geometry, HitRows};
 use crate::interaction::{LaneSurface, SurfaceRows};
@@ -33,14 +33,8 @@ pub struct Whitted {
 impl Whitted {
     /// For a scene seen by a camera, splitting white light into at most `bands` wavelength bands at dispersive surfaces.
     pub fn new(scene: &CompiledScene, camera: &Camera, bands: u32) -> Self {
-        let [u, v, w] = camera.axes();
-        let Window { left, right, bottom, top } = camera.window();
-        let view = match camera.projection() {
-            Projection::Perspective => ViewProjection { u, v, w, left, right, bottom, top },
-            Projection::Orthographic => ViewProjection::for_orthographic(u, v, w, (right - left) / (top - bottom)),
-        };
         let dispersion = Dispersion::new(scene, bands, camera.pixel_angle());
-        Self { dispersion, camera: camera.clone(), view }
+        Self { dispersion, camera: camera.clone(), view: view_of(camera) }
     }
 
     /// What a ray sees that leaves the scene.
@@ -78,10 +72,13 @@ struct Boundary<'a, L: Lanes> {
 }
 
 impl Integrator for Whitted {
+    type State = ();
+
     #[inline(always)]
     fn shade<L: Lanes, O: Observer>(
         &self,
         scene: &CompiledScene,
+        (): &mut (),
         rays: &RayRows,
         at: usize,
         active: Bits,

@@ -6,6 +6,7 @@
 
 mod adaptive;
 mod layers;
+mod paths;
 mod settings;
 #[cfg(test)]
 mod tests;
@@ -17,6 +18,7 @@ use snell_image::{Image, Layers};
 use snell_math::lanes::{Lanes, WIDTH};
 use snell_math::{Ray, Rgb, sampling};
 
+pub use paths::{DARK, PathSettings, explain_path, render_paths};
 pub use settings::RenderSettings;
 
 use crate::camera::Camera;
@@ -41,6 +43,10 @@ pub trait Progress: Sync {
     /// Pixels of this pass were finished.
     fn advance(&self, pixels: u64, rays: u64) {
         let _ = (pixels, rays);
+    }
+    /// Asked after each pass of path tracing: whether another one is wanted. What there is counts as complete where it is not.
+    fn wants_more(&self) -> bool {
+        true
     }
     /// True where the rest is not wanted any more.
     fn is_cancelled(&self) -> bool {
@@ -241,7 +247,7 @@ struct Worker {
     first_hits: Vec<FirstHit>,
 }
 
-impl<I: Integrator> Job<'_, I> {
+impl<I: Integrator<State = ()>> Job<'_, I> {
     fn run(&self, progress: &dyn Progress) -> Rendering {
         let RenderSettings { width, height, .. } = *self.settings;
         let mut passes = self.settings.passes().into_iter();
@@ -404,6 +410,15 @@ impl<I: Integrator> Job<'_, I> {
         statistics
     }
 
+    /// The ray of a sample through a place in a pixel, and the number of the place where it splits white light.
+    #[inline]
+    fn camera_sample(&self, [x, y]: [u32; 2], [dx, dy]: [f64; 2], number: u32) -> (Ray, u32) {
+        let ray = self.camera.generate_ray(f64::from(x) + dx, f64::from(y) + dy);
+        (ray, split_place([x, y], number))
+    }
+}
+
+impl<I: Integrator> Job<'_, I> {
     fn has_far_plane(&self) -> bool {
         self.camera.planes()[1] > f64::NEG_INFINITY
     }
@@ -412,13 +427,6 @@ impl<I: Integrator> Job<'_, I> {
     fn cut_far(&self, ray: &Ray, hit: &mut Option<Hit>) {
         let far = self.camera.far_distance(ray);
         *hit = hit.filter(|hit| hit.t <= far);
-    }
-
-    /// The ray of a sample through a place in a pixel, and the number of the place where it splits white light.
-    #[inline]
-    fn camera_sample(&self, [x, y]: [u32; 2], [dx, dy]: [f64; 2], number: u32) -> (Ray, u32) {
-        let ray = self.camera.generate_ray(f64::from(x) + dx, f64::from(y) + dy);
-        (ray, split_place([x, y], number))
     }
 
     fn tracer(&self) -> Tracer<'_, I> {

@@ -11,6 +11,7 @@
 
 mod cuboid;
 mod disk;
+mod emitter;
 pub(crate) mod frame;
 mod frustum;
 mod plane;
@@ -29,6 +30,7 @@ use snell_math::{Bounds3, Normal3, Point3, Ray, Transform};
 
 pub use cuboid::Cuboid;
 pub use disk::Disk;
+pub use emitter::{EmitterPoint, EmitterSurface};
 pub use frustum::Frustum;
 pub(crate) use plane::LanePlanes;
 pub use plane::Plane;

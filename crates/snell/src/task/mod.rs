@@ -47,6 +47,8 @@ pub enum RayKind {
     Reflected,
     /// Refraction into or out of a transparent body.
     Refracted,
+    /// Reflection in any direction at a surface that is no mirror, or a turn in a medium that scatters.
+    Scattered,
 }
 
 /// One wavelength band of those that white light is split into, as a place in the integrator's list.
@@ -87,6 +89,8 @@ pub enum Term {
     Specular(u32),
     /// Light scattered towards the viewer inside a milky body.
     Scattering(u32),
+    /// Light that came to the surface by specular ones, as photons.
+    Photons,
 }
 
 /// Why a ray was not followed.

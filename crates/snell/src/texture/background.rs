@@ -102,6 +102,19 @@ impl Background {
         }))
     }
 
+    /// Into how many columns and rows directions are to be cut so that most of it is seen: those of a panorama's picture, at most
+    /// 2048 and 1024.
+    #[must_use]
+    pub fn detail(&self) -> [usize; 2] {
+        match &self.0 {
+            Kind::Panorama(Panorama { image, .. }) => {
+                [image.width().clamp(8, 2048) as usize, image.height().clamp(4, 1024) as usize]
+            }
+            Kind::Photograph { .. } => [512, 256],
+            Kind::Color(_) | Kind::Gradient(_) => [1, 256],
+        }
+    }
+
     /// What is seen in a direction. The view is the camera's, which only a photograph looks at.
     #[must_use]
     pub fn evaluate(&self, direction: Vector3, view: &ViewProjection) -> Rgb {

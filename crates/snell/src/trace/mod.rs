@@ -61,15 +61,30 @@ pub struct Tracer<'a, I> {
     pub instructions: InstructionSet,
 }
 
+impl<I: Integrator<State = ()>> Tracer<'_, I> {
+    /// As [`Tracer::trace_with`], for an integrator that remembers nothing.
+    pub fn trace<'s, O: Observer>(
+        &self,
+        camera_rays: &(impl CameraRays + ?Sized),
+        scratch: &'s mut Scratch,
+        statistics: &mut Statistics,
+        observer: &mut O,
+        first_hits: Option<&mut FirstHitWatch<'_>>,
+    ) -> &'s [Rgb] {
+        self.trace_with(camera_rays, &mut (), scratch, statistics, observer, first_hits)
+    }
+}
+
 impl<I: Integrator> Tracer<'_, I> {
     /// Traces camera rays, one a sample, each with the number of its place to split white light, and all that follows from
     /// them; gives the samples' colours in the same order.
     ///
     /// `first_hits` is shown what each camera ray met, and may take it away: what lies beyond the far plane, say. `None` where
-    /// there is nothing to be shown.
-    pub fn trace<'s, O: Observer>(
+    /// there is nothing to be shown. `state` is what the integrator remembers of these samples.
+    pub fn trace_with<'s, O: Observer>(
         &self,
         camera_rays: &(impl CameraRays + ?Sized),
+        state: &mut I::State,
         scratch: &'s mut Scratch,
         statistics: &mut Statistics,
         observer: &mut O,
@@ -82,7 +97,7 @@ impl<I: Integrator> Tracer<'_, I> {
         statistics.camera_rays += count as u64;
         statistics.max_depth = statistics.max_depth.max(u32::from(count > 0));
         let next_id = count as u32;
-        let generations = Generations { tracer: self, scratch: &mut *scratch, statistics, observer, next_id };
+        let generations = Generations { tracer: self, state, scratch: &mut *scratch, statistics, observer, next_id };
         let whole = Whole { camera_rays, generations, first_hits };
         if O::WATCHES {
             // A watcher is told of one ray after the other.
@@ -98,8 +113,9 @@ impl<I: Integrator> Tracer<'_, I> {
 }
 
 /// What is left to do once the camera rays are in the first queue: generation after generation.
-struct Generations<'t, 'a, I, O> {
+struct Generations<'t, 'a, I: Integrator, O> {
     tracer: &'t Tracer<'a, I>,
+    state: &'t mut I::State,
     scratch: &'t mut Scratch,
     statistics: &'t mut Statistics,
     observer: &'t mut O,
@@ -107,7 +123,7 @@ struct Generations<'t, 'a, I, O> {
 }
 
 /// All there is to do: camera rays, then generation after generation.
-struct Whole<'c, 't, 'a, 'f, 'w, C: ?Sized, I, O> {
+struct Whole<'c, 't, 'a, 'f, 'w, C: ?Sized, I: Integrator, O> {
     camera_rays: &'c C,
     generations: Generations<'t, 'a, I, O>,
     first_hits: Option<&'f mut FirstHitWatch<'w>>,
@@ -209,7 +225,7 @@ impl<I: Integrator, O: Observer> Generations<'_, '_, I, O> {
         questions.clear();
         spawned.clear();
         spawned.resize(sums.count(), 0);
-        let (statistics, observer) = (&mut *self.statistics, &mut *self.observer);
+        let (statistics, observer, state) = (&mut *self.statistics, &mut *self.observer, &mut *self.state);
         let next_id = &mut self.next_id;
         let mut sink = Sink { sums, questions, next, spawned, media, statistics, observer, rules, next_id };
         let mut hits = hits.iter();
@@ -220,7 +236,7 @@ impl<I: Integrator, O: Observer> Generations<'_, '_, I, O> {
                     while rest.any() {
                         // In the last queue several may belong to one sample.
                         let together = if number + 1 < QUEUES { rest } else { Bits::lane(rest.lowest()) };
-                        integrator.shade::<L, O>(scene, rays, at, together, hits, surfaces, &mut sink);
+                        integrator.shade::<L, O>(scene, state, rays, at, together, hits, surfaces, &mut sink);
                         rest = rest.without(together);
                     }
                 }

@@ -11,6 +11,7 @@ mod determinism;
 mod explain;
 mod lighting;
 mod optics;
+mod paths;
 mod robust;
 mod seven_rays;
 mod spd;

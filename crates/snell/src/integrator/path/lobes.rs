@@ -1,0 +1,259 @@
+//! What a surface does with the light of a path: its lobes at the path's wavelengths, evaluated, sampled, with densities.
+//!
+//! World space; `wo` leads back along the path and `wi` on, both leaving the surface. Values have the cosine in them; densities are
+//! per steradian. The lobes are those of `whitted`, in physical units: Lambert's k_d / π; Phong's highlight as
+//! k_s / π · (R·L)ⁿ, which under a light without extent is what `whitted` shows; mirrors; the boundaries of bodies.
+//!
+//! Radiance is multiplied by (η_o / η_i)² where it is refracted (Veach, "Robust Monte Carlo Methods for Light Transport Simulation",
+//! 1997, section 5.2), power is not.
+
+use std::f64::consts::PI;
+
+use snell_math::warp::cosine_hemisphere;
+use snell_math::{Normal3, Vector3, portable};
+
+use super::spectra::{BLACK, Spectral, is_black, mean, plus, scaled};
+use crate::interaction::SurfaceInteraction;
+use crate::optics::{fresnel_dielectric, reflect, refract};
+
+/// Which way light is followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Transport {
+    /// From the eye: what is carried is radiance.
+    Radiance,
+    /// From a light: what is carried is power.
+    Power,
+}
+
+/// The colours of a surface at the wavelengths of a path.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceColors {
+    /// See [`crate::material::Bsdf::diffuse`].
+    pub diffuse: Spectral,
+    /// See [`crate::material::Bsdf::specular`].
+    pub specular: Spectral,
+    /// See [`crate::material::Bsdf::shininess`].
+    pub shininess: f64,
+    /// See [`crate::material::Bsdf::mirror`].
+    pub mirror: Spectral,
+    /// Lit and seen from the outward side alone.
+    pub one_sided: bool,
+    /// See [`crate::material::Interface`].
+    pub boundary: Option<BoundaryColors>,
+}
+
+/// The boundary of a transparent body at the wavelengths of a path.
+#[derive(Clone, Copy, Debug)]
+pub struct BoundaryColors {
+    /// The shares follow Fresnel's equations, scaled by the coefficients; or else are the coefficients.
+    pub fresnel: bool,
+    /// The coefficient of the reflected ray.
+    pub reflect: Spectral,
+    /// The coefficient of the refracted ray.
+    pub transmit: Spectral,
+    /// The indices of refraction on the side of `wo`.
+    pub before: Spectral,
+    /// And on the other.
+    pub beyond: Spectral,
+}
+
+/// The lobes of a surface where a path met it.
+#[derive(Clone, Copy, Debug)]
+pub struct Lobes {
+    /// Unit length, on the side of `wo`.
+    normal: Vector3,
+    flat: Vector3,
+    wo: Vector3,
+    diffuse: Spectral,
+    specular: Spectral,
+    shininess: f64,
+    mirror: Spectral,
+    reflected: Spectral,
+    refracted: Spectral,
+    /// Of the hero: η_o / η_i.
+    eta: f64,
+    /// The wavelengths go different ways where they are refracted.
+    disperses: bool,
+    /// With which probability each lobe is chosen: diffuse, highlight, mirror, reflected, refracted.
+    shares: [f64; 5],
+}
+
+/// A direction that a path goes on in.
+#[derive(Clone, Copy, Debug)]
+pub struct Scattered {
+    /// The direction, unit length, leaving the surface.
+    pub wi: Vector3,
+    /// What the light of that direction is multiplied by: value over density.
+    pub weight: Spectral,
+    /// The density of the direction among all that are not specular, and the cosine with the surface; `None` for a specular one.
+    pub density: Option<f64>,
+    /// It goes to the other side.
+    pub crosses: bool,
+    /// Only the hero goes this way.
+    pub hero_alone: bool,
+    /// (η_i / η_o)²: what radiance is larger by on the other side; 1 where it stays.
+    pub compression: f64,
+}
+
+impl Lobes {
+    /// Of a surface seen from `wo`.
+    pub fn new(colors: &SurfaceColors, interaction: &SurfaceInteraction, wo: Vector3) -> Self {
+        let flat = interaction.geometric_normal.face_forward(wo).as_vector();
+        let shading = interaction.shading_normal;
+        let side = if interaction.is_outward(wo) { 1.0 } else { -1.0 };
+        let shading = shading.as_vector() * side;
+        let normal = if shading.dot(wo) > 0.0 { shading } else { flat };
+        let hidden = colors.one_sided && side < 0.0;
+        let [diffuse, specular] = if hidden { [BLACK; 2] } else { [colors.diffuse, colors.specular] };
+        let (mut reflected, mut refracted, mut eta, mut disperses) = (BLACK, BLACK, 1.0, false);
+        if let Some(boundary) = &colors.boundary {
+            let cosine = normal.dot(wo);
+            for i in 0..reflected.len() {
+                let (before, beyond) = (boundary.before[i], boundary.beyond[i]);
+                let (reflect, transmit) = (boundary.reflect[i], boundary.transmit[i]);
+                let share = fresnel_dielectric(cosine, before, beyond);
+                let is_total = share >= 1.0;
+                (reflected[i], refracted[i]) = match (boundary.fresnel, is_total) {
+                    (true, true) => (reflect, 0.0),
+                    (true, false) => (reflect * share, transmit * (1.0 - share)),
+                    (false, true) => (reflect + transmit, 0.0),
+                    (false, false) => (reflect, transmit),
+                };
+            }
+            eta = boundary.before[0] / boundary.beyond[0];
+            disperses = boundary.before.iter().any(|&index| index != boundary.before[0])
+                || boundary.beyond.iter().any(|&index| index != boundary.beyond[0]);
+        }
+        let shininess = colors.shininess;
+        let mut lobes = Self {
+            normal,
+            flat,
+            wo,
+            diffuse,
+            specular,
+            shininess,
+            mirror: colors.mirror,
+            reflected,
+            refracted,
+            eta,
+            disperses,
+            shares: [0.0; 5],
+        };
+        lobes.choose();
+        lobes
+    }
+
+    /// Works out the probabilities: proportional to what lobes reflect. They are the same for light that goes the other way.
+    fn choose(&mut self) {
+        // Where indices differ between wavelengths, by the hero's share alone, which decides about refraction.
+        let of_hero = |shares: Spectral| if self.disperses { shares[0] } else { mean(shares) };
+        let albedos = [
+            mean(self.diffuse),
+            mean(self.specular) * 2.0 / (self.shininess + 1.0),
+            mean(self.mirror),
+            of_hero(self.reflected),
+            of_hero(self.refracted),
+        ];
+        let sum: f64 = albedos.iter().sum();
+        self.shares = if sum > 0.0 { albedos.map(|albedo| albedo / sum) } else { [0.0; 5] };
+    }
+
+    /// True where lights can be asked and light from elsewhere be gathered: where some lobe is not specular.
+    #[inline]
+    pub fn is_lit(&self) -> bool {
+        !(is_black(self.diffuse) && is_black(self.specular))
+    }
+
+    /// The cosine of a direction with the surface as it is, not as it is shaded; negative for one that goes to the other side.
+    #[inline]
+    pub fn flat_cosine(&self, wi: Vector3) -> f64 {
+        self.flat.dot(wi)
+    }
+
+    /// What the lobes that are not specular make of light from `wi`, cosine included, and the density with which they would choose
+    /// that direction.
+    pub fn evaluate(&self, wi: Vector3) -> (Spectral, f64) {
+        let cosine = self.normal.dot(wi);
+        if cosine <= 0.0 || self.flat.dot(wi) <= 0.0 {
+            return (BLACK, 0.0);
+        }
+        let mut value = scaled(self.diffuse, cosine / PI);
+        let mut density = self.shares[0] * cosine / PI;
+        if self.shares[1] > 0.0 {
+            let mirrored = reflect(self.wo, Normal3::from(self.normal));
+            let highlight = self.highlight(mirrored.dot(wi));
+            value = plus(value, scaled(self.specular, highlight / PI));
+            density += self.shares[1] * highlight * (self.shininess + 1.0) / (2.0 * PI);
+        }
+        (value, density)
+    }
+
+    /// cosⁿ about the mirrored direction.
+    fn highlight(&self, cosine: f64) -> f64 {
+        if cosine > 0.0 { portable::pow(cosine.min(1.0), self.shininess) } else { 0.0 }
+    }
+
+    /// A direction to go on in, by a number in [0, 1) for the lobe and two for the direction; `None` where light ends.
+    pub fn sample(&self, lobe: f64, u: [f64; 2], transport: Transport) -> Option<Scattered> {
+        let [diffuse, highlight, mirror, reflected, refracted] = self.shares;
+        let mut rest = lobe;
+        if rest < diffuse + highlight {
+            let (x, y) = self.normal.orthonormal_basis();
+            let wi = if rest < diffuse {
+                let local = cosine_hemisphere(u);
+                x * local.x() + y * local.y() + self.normal * local.z()
+            } else {
+                self.sample_highlight(u)
+            };
+            let wi = wi.normalize();
+            let (value, density) = self.evaluate(wi);
+            return (density > 0.0).then(|| Scattered {
+                wi,
+                weight: scaled(value, 1.0 / density),
+                density: Some(density),
+                crosses: false,
+                hero_alone: false,
+                compression: 1.0,
+            });
+        }
+        rest -= diffuse + highlight;
+        if rest < mirror + reflected {
+            let (color, share) = if rest < mirror { (self.mirror, mirror) } else { (self.reflected, reflected) };
+            return self.reflect(color, share);
+        }
+        if refracted > 0.0 { self.refract(transport) } else { None }
+    }
+
+    fn sample_highlight(&self, [u, v]: [f64; 2]) -> Vector3 {
+        let mirrored = reflect(self.wo, Normal3::from(self.normal)).normalize();
+        let cosine = portable::pow(1.0 - u, 1.0 / (self.shininess + 1.0));
+        let sine = ((1.0 - cosine) * (1.0 + cosine)).max(0.0).sqrt();
+        let angle = 2.0 * PI * v;
+        let (x, y) = mirrored.orthonormal_basis();
+        x * (sine * portable::cos(angle)) + y * (sine * portable::sin(angle)) + mirrored * cosine
+    }
+
+    fn reflect(&self, color: Spectral, share: f64) -> Option<Scattered> {
+        let mut wi = reflect(self.wo, Normal3::from(self.normal));
+        // On a smooth mesh the shading normal may send it through the surface; then the flat one decides.
+        if self.flat.dot(wi) <= 0.0 {
+            wi = reflect(self.wo, Normal3::from(self.flat));
+        }
+        let weight = scaled(color, 1.0 / share);
+        Some(Scattered { wi, weight, density: None, crosses: false, hero_alone: false, compression: 1.0 })
+    }
+
+    fn refract(&self, transport: Transport) -> Option<Scattered> {
+        let mut wi = refract(self.wo, Normal3::from(self.normal), self.eta)?;
+        if self.flat.dot(wi) >= 0.0 {
+            wi = refract(self.wo, Normal3::from(self.flat), self.eta)?;
+        }
+        let compression = 1.0 / (self.eta * self.eta);
+        let factor = match transport {
+            Transport::Radiance => 1.0 / compression,
+            Transport::Power => 1.0,
+        };
+        let weight = scaled(self.refracted, factor / self.shares[4]);
+        Some(Scattered { wi, weight, density: None, crosses: true, hero_alone: self.disperses, compression })
+    }
+}

@@ -1,0 +1,163 @@
+//! The way of a path between surfaces: what bodies absorb and scatter, and what is between a point and a light.
+//!
+//! Distances in media that scatter are chosen by the extinction of one of the path's wavelengths, each as likely as the others, and weighed
+//! by the mean of all densities: Wilkie et al. 2014, section 4. Phase functions are Henyey and Greenstein's.
+
+use snell_math::warp::{exponential, henyey_greenstein, henyey_greenstein_density};
+use snell_math::{Ray, Vector3};
+
+use super::lights::Arriving;
+use super::sample::{Purpose, Vertex};
+use super::spectra::{Spectral, attenuated, is_black, mean, plus, scaled, times};
+use super::{Path, Step};
+use crate::geometry::{Geometry, QueryScratch};
+use crate::interaction::LaneSurface;
+use crate::observe::Observer;
+use crate::task::{Inside, RayKind, Term};
+
+/// How many boundaries that do not bend light a shadow ray goes through at most.
+const MAX_PASSES: u32 = 4096;
+
+impl Path {
+    /// What happens on the way to a distance. True where the path was scattered before it came there.
+    pub(super) fn travel<O: Observer>(&self, step: &mut Step<'_, '_, '_, O>, distance: f64) -> bool {
+        let Some(inside) = step.out.media.current(step.task.media) else { return false };
+        let Some(body) = self.materials.body(inside.material) else { return false };
+        let nm = step.path.wavelengths.nm();
+        let [absorption, scattering] = body.at(nm);
+        let extinction = plus(absorption, scattering);
+        if is_black(scattering) {
+            let left = extinction.map(|coefficient| attenuated(coefficient, distance));
+            step.path.throughput = times(step.path.throughput, left);
+            return false;
+        }
+        let [choice, u, first, second] = step.path.draw(Purpose::Medium);
+        let alone = step.path.wavelengths.is_hero_alone();
+        let chosen = if alone { 0 } else { ((choice * extinction.len() as f64) as usize).min(extinction.len() - 1) };
+        let reached = if extinction[chosen] > 0.0 { exponential(u, extinction[chosen]) } else { f64::INFINITY };
+        // The density of what happened, over all wavelengths that might have been chosen.
+        let over_choices = |values: Spectral| if alone { values[0] } else { mean(values) };
+        if reached >= distance {
+            let left = extinction.map(|coefficient| attenuated(coefficient, distance));
+            let probability = over_choices(left);
+            step.path.throughput = scaled(times(step.path.throughput, left), 1.0 / probability);
+            return false;
+        }
+        let left = extinction.map(|coefficient| attenuated(coefficient, reached));
+        let density = over_choices(times(extinction, left));
+        step.path.throughput = scaled(times(step.path.throughput, times(scattering, left)), 1.0 / density);
+        self.scatter(step, reached, body.anisotropy, [first, second]);
+        true
+    }
+
+    /// Scatters a path inside a body.
+    fn scatter<O: Observer>(&self, step: &mut Step<'_, '_, '_, O>, reached: f64, anisotropy: f64, u: [f64; 2]) {
+        let point = step.task.ray.at(reached);
+        let forward = step.task.ray.direction;
+        let [choice, first, second, _] = step.path.draw(Purpose::Light);
+        let wavelengths = &step.path.wavelengths;
+        let arriving = self.lights.sample(step.scene, &self.colors, wavelengths, point, choice, [first, second]);
+        if let Some(arriving) = arriving {
+            let density = henyey_greenstein_density(forward.dot(arriving.wi), anisotropy);
+            let weight = arriving.density.map_or(1.0, |asked| asked / (asked + density));
+            let value = [density * weight; 4];
+            let term = Term::Scattering(self.lights.name(arriving.light));
+            self.ask(step, &arriving, Ray::new(point, arriving.wi), arriving.distance, value, term);
+        }
+        let local = henyey_greenstein(u, anisotropy);
+        let (x, y) = forward.orthonormal_basis();
+        let wi: Vector3 = (x * local.x() + y * local.y() + forward * local.z()).normalize();
+        let density = henyey_greenstein_density(forward.dot(wi), anisotropy);
+        step.path.scattered = Some(Vertex { point, density, cosine: 1.0, gathers: false });
+        step.path.specular = 0;
+        let [.., roulette] = step.path.draw(Purpose::Direction);
+        let media = step.task.media;
+        step.spawn(RayKind::Scattered, Ray::new(point, wi), media, roulette);
+    }
+
+    /// Asks a light for what it gives, times a value; what bodies leave of it on the way is worked out here.
+    pub(super) fn ask<O: Observer>(
+        &self,
+        step: &mut Step<'_, '_, '_, O>,
+        arriving: &Arriving,
+        ray: Ray,
+        distance: f64,
+        value: Spectral,
+        term: Term,
+    ) {
+        // The place itself is not in its own way.
+        let distance = distance * (1.0 - 1e-9);
+        let light = match arriving.light_over_density {
+            Some(light) => light,
+            None => match self.light_met(step, arriving, &ray) {
+                Some(light) => light,
+                None => return,
+            },
+        };
+        let value = times(times(step.path.throughput, value), light);
+        let is_inside = step.out.media.current(step.task.media).is_some();
+        if !(is_inside || self.materials.some_pass()) {
+            let color = step.path.wavelengths.color(value);
+            if !color.is_black() {
+                let question = step.question(ray, distance, term, color);
+                step.out.ask(question);
+            }
+            return;
+        }
+        let left = self.way_to_light(step, ray, distance);
+        let question = step.question(ray, distance, term, step.path.wavelengths.color(times(value, left)));
+        step.out.answer(&question, !is_black(left));
+    }
+
+    /// The light of a surface whose radiance differs from place to place, over the density of its choice.
+    fn light_met<O: Observer>(&self, step: &Step<'_, '_, '_, O>, arriving: &Arriving, ray: &Ray) -> Option<Spectral> {
+        let hit = step.scene.geometry.intersect(ray, f64::INFINITY, &mut QueryScratch::default())?;
+        let interaction = step.scene.geometry.interaction(ray, &hit);
+        if self.lights.surface_at(&interaction) != Some(arriving.light) {
+            return None;
+        }
+        let material = &step.scene.materials[interaction.material as usize];
+        let color = material.bsdf(&step.scene.textures, &interaction).emission;
+        let wavelengths = &step.path.wavelengths;
+        let radiance = self.colors.light(color, wavelengths.nm(), wavelengths.white);
+        Some(scaled(radiance, 1.0 / arriving.density?))
+    }
+
+    /// What is left of light on a straight way through boundaries that do not bend it; nothing where something is in the way.
+    fn way_to_light<O: Observer>(&self, step: &mut Step<'_, '_, '_, O>, mut ray: Ray, mut distance: f64) -> Spectral {
+        let nm = step.path.wavelengths.nm();
+        let mut media = step.task.media;
+        let mut left = super::spectra::WHITE;
+        let mut scratch = QueryScratch::default();
+        for _ in 0..MAX_PASSES {
+            let hit = step.scene.geometry.intersect(&ray, distance, &mut scratch);
+            let way = hit.as_ref().map_or(distance, |hit| hit.t);
+            if let Some(inside) = step.out.media.current(media)
+                && let Some(body) = self.materials.body(inside.material)
+            {
+                left = times(left, body.transmittance(nm, way));
+            }
+            let Some(hit) = hit else { return left };
+            let interaction = step.scene.geometry.interaction(&ray, &hit);
+            let number = interaction.material;
+            let Some(body) = &step.scene.materials[number as usize].body else { return super::spectra::BLACK };
+            let leaving = interaction.is_outward(ray.direction);
+            let inside = Inside { solid: interaction.solid, material: number, priority: body.priority };
+            let at_origin = Geometry::is_at_origin(&ray, hit.t);
+            let crossing = step.out.media.cross(media, inside, leaving, at_origin);
+            if !crossing.is_without_effect() {
+                // A boundary that bends nothing.
+                match self.materials.straight(number, [crossing.before, crossing.beyond], nm) {
+                    Some(share) => left = times(left, share),
+                    None => return super::spectra::BLACK,
+                }
+            }
+            media = crossing.after;
+            let origin: snell_math::Point3 =
+                LaneSurface::<f64>::from(&interaction).spawn_origin(ray.direction.into()).into();
+            distance -= (origin - ray.origin).dot(ray.direction);
+            ray = Ray::new(origin, ray.direction);
+        }
+        super::spectra::BLACK
+    }
+}

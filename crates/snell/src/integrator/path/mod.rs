@@ -1,0 +1,393 @@
+//! Light as it is: paths from the eye, four wavelengths each, to lights of any size, together with photons that come to surfaces through
+//! glass and off mirrors.
+//!
+//! Follows: Kajiya, "The Rendering Equation", SIGGRAPH 1986; Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997
+//! (asking lights and meeting them by chance, weighed by the balance heuristic); Wilkie et al. 2014 for wavelengths;
+//! Hachisuka, Ogaki and Jensen, "Progressive Photon Mapping", 2008, and Georgiev et al., "Light Transport Simulation with Vertex
+//! Connection and Merging", 2012, for [photons](photons).
+//!
+//! The same scenes and materials as for `whitted` serve, in the same units. Ambient light, which there stands for what paths find, is
+//! left out; the background gives light. World space.
+
+mod emission;
+mod environment;
+mod lights;
+mod lobes;
+mod materials;
+mod medium;
+mod photons;
+mod sample;
+mod spectra;
+
+use snell_math::lanes::{Bits, Lanes};
+use snell_math::sampler::Sampler;
+use snell_math::{Bounds3, Point3, Ray, Rgb};
+
+use super::{Integrator, Sink, view_of};
+use crate::camera::{Camera, Projection, Window};
+use crate::compile::CompiledScene;
+use crate::geometry::{HitRows, WorldSurface};
+use crate::interaction::{LaneSurface, SurfaceInteraction, SurfaceRows};
+use crate::material::Material;
+use crate::observe::Observer;
+use crate::task::{Crossing, Cut, Inside, MediumStack, RayKind, RayRows, RayTask, ShadowQuestion, Term};
+use emission::{Emission, Targets};
+use lights::Lights;
+use lobes::{Lobes, Transport};
+use materials::PathMaterials;
+pub use photons::{PhotonMap, PhotonPasses};
+use sample::Vertex;
+pub use sample::{PathSample, Purpose};
+pub use spectra::Wavelengths;
+use spectra::{Colors, Spectral, largest, scaled, times};
+
+/// From this depth on paths end by chance, the likelier the less they carry.
+const ROULETTE_DEPTH: u16 = 4;
+/// How many specular surfaces a photon meets at most: as many as a path of the default depth.
+const PHOTON_DEPTH: u32 = 63;
+
+/// Path tracing.
+#[derive(Debug)]
+pub struct Path {
+    camera: Camera,
+    colors: Colors,
+    materials: PathMaterials,
+    lights: Lights,
+    /// Light that sets out to what is specular; `None` where there is no such thing, or no light.
+    emission: Option<Emission>,
+    /// The photons of the pass.
+    photons: Option<PhotonMap>,
+    /// The most specular surfaces that a photon meets.
+    depth: u32,
+}
+
+impl Path {
+    /// For a scene seen by a camera.
+    pub fn new(scene: &CompiledScene, camera: &Camera) -> Self {
+        let view = view_of(camera);
+        let lights = Lights::new(scene, &view);
+        let emission = targets(scene).and_then(|targets| Emission::new(scene, &lights, targets));
+        let materials = PathMaterials::new(scene);
+        let (camera, colors) = (camera.clone(), Colors::new());
+        Self { camera, colors, materials, lights, emission, photons: None, depth: PHOTON_DEPTH }
+    }
+
+    /// True where nothing in the scene gives off light.
+    pub fn is_dark(&self) -> bool {
+        self.lights.is_empty()
+    }
+
+    /// The passes of photons for a picture of so many pixels, under a seed; `None` where they would bring nothing.
+    pub fn photon_passes(&self, seed: u32, pixels: u64) -> Option<PhotonPasses> {
+        PhotonPasses::new(self, seed, pixels)
+    }
+
+    /// Sets the photons that paths gather from now on.
+    pub fn gather_from(&mut self, photons: Option<PhotonMap>) {
+        self.photons = photons;
+    }
+
+    /// The size of a pixel as it is seen at a point, world units.
+    fn pixel_size(&self, point: Point3) -> f64 {
+        match self.camera.projection() {
+            Projection::Perspective => self.camera.eye().distance(point) * self.camera.pixel_angle(),
+            Projection::Orthographic => {
+                let Window { left, right, .. } = self.camera.window();
+                (right - left) / f64::from(self.camera.pixels()[0])
+            }
+        }
+    }
+
+    /// A path for a sample of a pixel under a seed. Those of a pass with photons share their wavelengths with them.
+    pub fn begin(&self, seed: u32, pixel: [u32; 2], sample: u32) -> PathSample {
+        let sampler = Sampler::new(seed, pixel, sample);
+        let wavelengths = match &self.photons {
+            Some(photons) => *photons.wavelengths(),
+            None => {
+                let [u, ..] = sampler.set(Purpose::Wavelengths.set(0));
+                Wavelengths::sample(u)
+            }
+        };
+        PathSample::new(sampler, wavelengths)
+    }
+}
+
+/// What is specular in a scene where light that it sends on may fall on something; else `None`.
+fn targets(scene: &CompiledScene) -> Option<Targets> {
+    let surfaces = scene.geometry.world_surfaces();
+    // Parts of solids and meshes may have materials of their own. The last material is that of objects without one.
+    let given = scene.materials.split_last().map_or(&[][..], |(_, given)| given);
+    let is_lit = |surface: &WorldSurface<'_>| scene.materials[surface.material as usize].is_lit();
+    if !(given.iter().any(Material::is_lit) || surfaces.iter().any(is_lit)) {
+        return None;
+    }
+    let boxes: Vec<Bounds3> = surfaces
+        .iter()
+        .filter(|surface| scene.materials[surface.material as usize].is_specular())
+        .map(|surface| surface.bounds)
+        .collect();
+    let bounded = surfaces.iter().filter(|surface| surface.bounds.is_finite());
+    let everything = bounded.fold(Bounds3::EMPTY, |all, surface| all.union(&surface.bounds));
+    let is_hidden = boxes.is_empty() && scene.materials.iter().any(Material::is_specular);
+    let boxes = if is_hidden { vec![everything] } else { boxes };
+    Targets::new(&boxes, &everything)
+}
+
+/// A ray of a path being shaded.
+struct Step<'a, 'b, 's, O> {
+    scene: &'a CompiledScene,
+    task: RayTask,
+    path: &'b mut PathSample,
+    out: &'b mut Sink<'s, O>,
+}
+
+impl Integrator for Path {
+    type State = Vec<PathSample>;
+
+    #[inline(always)]
+    fn shade<L: Lanes, O: Observer>(
+        &self,
+        scene: &CompiledScene,
+        state: &mut Vec<PathSample>,
+        rays: &RayRows,
+        at: usize,
+        active: Bits,
+        hits: &HitRows,
+        surfaces: &mut SurfaceRows,
+        out: &mut Sink<'_, O>,
+    ) {
+        let met = Bits(hits.met().0 >> at) & active;
+        if met.any() {
+            scene.geometry.surfaces::<L>((&rays.origin, &rays.direction), at, hits, met, surfaces);
+        }
+        for lane in active.lanes() {
+            let interaction = met.has(lane).then(|| scene.geometry.interaction_of(hits, surfaces, at + lane));
+            let task = rays.task(at + lane);
+            out.met(&task, interaction.as_ref());
+            let path = &mut state[task.sample as usize];
+            self.step(&mut Step { scene, task, path, out }, interaction.as_ref());
+        }
+    }
+}
+
+impl Path {
+    /// One ray of a path, and where it goes on.
+    #[inline(never)]
+    fn step<O: Observer>(&self, step: &mut Step<'_, '_, '_, O>, interaction: Option<&SurfaceInteraction>) {
+        let distance = interaction.map_or(f64::INFINITY, |interaction| interaction.t);
+        if self.travel(step, distance) {
+            return;
+        }
+        match interaction {
+            None => self.leave(step),
+            Some(interaction) => self.meet(step, interaction),
+        }
+    }
+
+    /// A path that leaves the scene finds the background.
+    fn leave<O: Observer>(&self, step: &mut Step<'_, '_, '_, O>) {
+        let direction = step.task.ray.direction;
+        let radiance = if let Some(color) = self.background_of_orthographic(step) {
+            self.colors.light(color, step.path.wavelengths.nm(), step.path.wavelengths.white)
+        } else {
+            self.lights.environment_radiance(&self.colors, &step.path.wavelengths, step.scene, direction)
+        };
+        let weight = match step.path.scattered {
+            Some(vertex) if step.path.specular == 0 => {
+                let asked = self.lights.density_of_environment(step.scene, vertex.point, direction);
+                vertex.density / (vertex.density + asked)
+            }
+            Some(vertex) => self.weight_beside_photons(&vertex, |emission| {
+                emission.density_of_environment(&self.lights, step.task.ray.origin, -direction)
+            }),
+            None => 1.0,
+        };
+        step.add(Term::Background, scaled(radiance, weight));
+    }
+
+    /// The parallel rays of an orthographic camera see a photograph by where they are, not by where they go.
+    fn background_of_orthographic<O>(&self, step: &Step<'_, '_, '_, O>) -> Option<Rgb> {
+        let is_parallel = self.camera.projection() == Projection::Orthographic && step.task.kind == RayKind::Camera;
+        is_parallel.then(|| {
+            let position = self.camera.picture_position(step.task.ray.origin);
+            step.scene.background.evaluate_at_pixel(position, step.task.ray.direction)
+        })
+    }
+
+    /// A path that meets a surface.
+    fn meet<O: Observer>(&self, step: &mut Step<'_, '_, '_, O>, interaction: &SurfaceInteraction) {
+        let number = interaction.material;
+        let material = &step.scene.materials[number as usize];
+        let wo = -step.task.ray.direction;
+        let mut crossing = None;
+        if let Some(body) = &material.body {
+            let leaving = interaction.is_outward(step.task.ray.direction);
+            let at_origin = crate::geometry::Geometry::is_at_origin(&step.task.ray, interaction.t);
+            let inside = Inside { solid: interaction.solid, material: number, priority: body.priority };
+            let met = step.out.media.cross(step.task.media, inside, leaving, at_origin);
+            let nm = step.path.wavelengths.nm();
+            let straight = if met.is_without_effect() {
+                Some(spectra::WHITE)
+            } else {
+                self.materials.straight(number, [met.before, met.beyond], nm)
+            };
+            if let Some(share) = straight {
+                step.path.throughput = times(step.path.throughput, share);
+                let origin = LaneSurface::<f64>::from(interaction).spawn_origin(step.task.ray.direction.into());
+                let ray = Ray::new(origin.into(), step.task.ray.direction);
+                step.out.pass(&step.task, ray, met.after);
+                return;
+            }
+            crossing = Some(met);
+        }
+        let bsdf = material.bsdf(&step.scene.textures, interaction);
+        if !bsdf.emission.is_black() && (!bsdf.one_sided || interaction.is_outward(wo)) {
+            self.find_light(step, interaction, bsdf.emission);
+        }
+        let nm = step.path.wavelengths.nm();
+        let sides = crossing.map(|Crossing { before, beyond, .. }| [before, beyond]);
+        let is_tinted = interaction.vertex_color.is_some();
+        let colors = self.materials.colors(&self.colors, number, &bsdf, is_tinted, sides, nm);
+        let lobes = Lobes::new(&colors, interaction, wo);
+        if lobes.is_lit() {
+            self.ask_light(step, interaction, &lobes);
+            if let Some(photons) = &self.photons {
+                let found = photons.gather(interaction, &lobes, step.path.wavelengths.is_hero_alone());
+                step.add(Term::Photons, found);
+            }
+        }
+        self.go_on(step, interaction, &lobes, crossing);
+    }
+
+    /// Light that a surface gives off, found by a ray.
+    fn find_light<O: Observer>(&self, step: &mut Step<'_, '_, '_, O>, interaction: &SurfaceInteraction, color: Rgb) {
+        let wavelengths = &step.path.wavelengths;
+        let found = self.lights.surface_at(interaction);
+        let radiance = match found.and_then(|index| self.lights.constant_radiance(index)) {
+            Some(radiance) => wavelengths.nm().map(|nm| radiance.at(nm)),
+            None => self.colors.light(color, wavelengths.nm(), wavelengths.white),
+        };
+        let weight = match (step.path.scattered, found) {
+            (Some(vertex), Some(index)) if step.path.specular == 0 => {
+                let asked = self.lights.density_of_surface(step.scene, index, vertex.point, interaction);
+                vertex.density / (vertex.density + asked)
+            }
+            (Some(vertex), Some(index)) => self.weight_beside_photons(&vertex, |emission| {
+                let (place, normal) = (interaction.point, interaction.geometric_normal.as_vector());
+                emission.density_of_surface(&self.lights, index, place, normal, -step.task.ray.direction)
+            }),
+            _ => 1.0,
+        };
+        step.add(Term::Emission, scaled(radiance, weight));
+    }
+
+    /// The weight of light that a path found by specular surfaces after it was scattered, where photons may have found it too.
+    fn weight_beside_photons(&self, vertex: &Vertex, density: impl FnOnce(&Emission) -> f64) -> f64 {
+        match (&self.photons, &self.emission) {
+            (Some(photons), Some(emission)) if vertex.gathers => {
+                photons.weight_of_path(density(emission), vertex.cosine, vertex.density)
+            }
+            _ => 1.0,
+        }
+    }
+
+    /// Asks one light for what it gives a surface.
+    fn ask_light<O: Observer>(&self, step: &mut Step<'_, '_, '_, O>, interaction: &SurfaceInteraction, lobes: &Lobes) {
+        let [choice, u, v, _] = step.path.draw(Purpose::Light);
+        let point = interaction.point;
+        let wavelengths = &step.path.wavelengths;
+        let Some(arriving) = self.lights.sample(step.scene, &self.colors, wavelengths, point, choice, [u, v]) else {
+            return;
+        };
+        let (value, density) = lobes.evaluate(arriving.wi);
+        if density == 0.0 {
+            return;
+        }
+        let weight = arriving.density.map_or(1.0, |asked| asked / (asked + density));
+        let value = scaled(value, weight);
+        let origin = LaneSurface::<f64>::from(interaction).spawn_origin(arriving.wi.into());
+        let from = Ray::new(origin.into(), arriving.wi);
+        let distance = arriving.distance - (from.origin - point).dot(arriving.wi);
+        self.ask(step, &arriving, from, distance, value, Term::Diffuse(self.lights.name(arriving.light)));
+    }
+
+    /// Sends the path on from a surface.
+    fn go_on<O: Observer>(
+        &self,
+        step: &mut Step<'_, '_, '_, O>,
+        interaction: &SurfaceInteraction,
+        lobes: &Lobes,
+        crossing: Option<Crossing>,
+    ) {
+        let [lobe, u, v, roulette] = step.path.draw(Purpose::Direction);
+        let Some(scattered) = lobes.sample(lobe, [u, v], Transport::Radiance) else { return };
+        let path = &mut *step.path;
+        path.throughput = times(path.throughput, scattered.weight);
+        path.compression *= scattered.compression;
+        match scattered.density {
+            Some(density) => {
+                let (point, cosine) = (interaction.point, lobes.flat_cosine(scattered.wi));
+                path.scattered = Some(Vertex { point, density, cosine, gathers: true });
+                path.specular = 0;
+            }
+            None => path.specular += 1,
+        }
+        if scattered.hero_alone {
+            path.wavelengths.give_up_others();
+        }
+        let (kind, media) = match crossing {
+            Some(crossing) if scattered.crosses => (RayKind::Refracted, crossing.after),
+            _ if scattered.density.is_some() => (RayKind::Scattered, step.task.media),
+            _ => (RayKind::Reflected, step.task.media),
+        };
+        let origin = LaneSurface::<f64>::from(interaction).spawn_origin(scattered.wi.into());
+        step.spawn(kind, Ray::new(origin.into(), scattered.wi), media, roulette);
+    }
+}
+
+impl<O: Observer> Step<'_, '_, '_, O> {
+    /// Adds light that the ray sees to the sample.
+    fn add(&mut self, term: Term, light: Spectral) {
+        let color = self.path.wavelengths.color(times(self.path.throughput, light));
+        if !color.is_black() {
+            self.out.add_one(&self.task, term, color);
+        }
+    }
+
+    /// Sends the path on, unless it ends by depth or by chance.
+    fn spawn(&mut self, kind: RayKind, ray: Ray, media: MediumStack, roulette: f64) {
+        let path = &mut *self.path;
+        path.events += 1;
+        let wavelengths = &path.wavelengths;
+        let carried = if wavelengths.is_hero_alone() { path.throughput[0] } else { largest(path.throughput) };
+        if carried == 0.0 {
+            return;
+        }
+        if self.task.depth >= self.out.depth() {
+            let lost = wavelengths.color(times(path.throughput, wavelengths.white));
+            self.out.cut_path(&self.task, Cut::Depth, lost);
+            return;
+        }
+        if self.task.depth >= ROULETTE_DEPTH {
+            let survival = (carried * path.compression).min(1.0);
+            if roulette >= survival {
+                return;
+            }
+            path.throughput = scaled(path.throughput, 1.0 / survival);
+        }
+        self.out.send(&self.task, kind, ray, media);
+    }
+
+    /// A question to a light, of a value that it adds if nothing is in the way.
+    fn question(&self, ray: Ray, distance: f64, term: Term, value: Rgb) -> ShadowQuestion {
+        ShadowQuestion {
+            ray,
+            distance,
+            terms: [(term, value), (term, Rgb::BLACK)],
+            sample: self.task.sample,
+            task: self.task.id,
+            media: self.task.media,
+            extinction_scale: 1.0,
+        }
+    }
+}
