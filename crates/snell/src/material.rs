@@ -10,6 +10,7 @@ use snell_scene::Id;
 use snell_scene::scene;
 
 use crate::interaction::SurfaceInteraction;
+use crate::optics::Metal;
 use crate::texture::{Footprint, LaneCoordinates, Spaces, TextureCoordinates, Textures};
 
 /// What a surface does with light at one point.
@@ -207,6 +208,19 @@ pub struct Material {
     is_plain: bool,
     /// The inside of the body, where it is transparent.
     pub body: Option<Body>,
+    /// The metal that it is.
+    pub metal: Option<MetalSurface>,
+}
+
+/// The surface of a metal.
+#[derive(Clone, Debug)]
+pub struct MetalSurface {
+    /// Which metal.
+    pub metal: Metal,
+    /// How rough it is, from 0 to 1.
+    pub roughness: f32,
+    /// A thin film on it.
+    pub film: Option<scene::Film>,
 }
 
 /// The inside of a transparent body.
@@ -218,6 +232,10 @@ pub struct Body {
     pub medium: scene::Medium,
     /// Which body wins where several overlap.
     pub priority: i32,
+    /// How rough its boundary is, from 0 to 1.
+    pub roughness: f32,
+    /// A thin film on it.
+    pub film: Option<scene::Film>,
 }
 
 /// A colour of a material that a texture may give.
@@ -240,12 +258,25 @@ impl Material {
             textured: Vec::new(),
             is_plain: false,
             body: None,
+            metal: material.metal.as_ref().map(|metal| MetalSurface {
+                metal: Metal::new(metal.index),
+                roughness: metal.roughness,
+                film: metal.film.clone(),
+            }),
         };
+        if let Some(metal) = &compiled.metal {
+            compiled.base = metal_bsdf(metal, &compiled.base);
+        }
         if let Some(dielectric) = &material.dielectric {
             compiled.base.interface =
                 Some(Interface { fresnel: dielectric.fresnel, reflect: Rgb::BLACK, transmit: Rgb::BLACK });
-            compiled.body =
-                Some(Body { ior: dielectric.ior.clone(), medium: dielectric.medium, priority: dielectric.priority });
+            compiled.body = Some(Body {
+                ior: dielectric.ior.clone(),
+                medium: dielectric.medium,
+                priority: dielectric.priority,
+                roughness: dielectric.roughness,
+                film: dielectric.film.clone(),
+            });
             compiled.fill(Slot::Reflect, dielectric.reflect, textures);
             compiled.fill(Slot::Transmit, dielectric.transmit, textures);
         }
@@ -273,6 +304,7 @@ impl Material {
             textured: Vec::new(),
             is_plain: true,
             body: None,
+            metal: None,
         }
     }
 
@@ -289,12 +321,18 @@ impl Material {
     /// True where lights matter, somewhere at least.
     pub fn is_lit(&self) -> bool {
         let is_textured = |(slot, _): &(Slot, _)| matches!(slot, Slot::Diffuse | Slot::Specular);
-        self.base.is_lit() || self.textured.iter().any(is_textured)
+        let is_rough = self.body.as_ref().is_some_and(|body| body.roughness > 0.0);
+        is_rough || self.base.is_lit() || self.textured.iter().any(is_textured)
     }
 
     /// True where it mirrors or bends light, somewhere at least.
     pub fn is_specular(&self) -> bool {
-        let bends = self.body.as_ref().is_some_and(|body| body.ior != snell_math::Dispersion::Constant(1.0));
+        let bends = self.body.as_ref().is_some_and(|body| {
+            body.roughness == 0.0 && (body.film.is_some() || body.ior != snell_math::Dispersion::Constant(1.0))
+        });
+        if let Some(metal) = &self.metal {
+            return metal.roughness == 0.0;
+        }
         bends || !self.base.mirror.is_black() || self.textured.iter().any(|(slot, _)| *slot == Slot::Mirror)
     }
 
@@ -385,6 +423,18 @@ impl Material {
             None => self.textured.push((slot, texture)),
         }
     }
+}
+
+/// A metal as the lecture's terms show it: smooth, a mirror of its colour; the rougher, the more a highlight and the less a mirror.
+fn metal_bsdf(metal: &MetalSurface, base: &Bsdf) -> Bsdf {
+    let color = metal.metal.color();
+    if metal.roughness == 0.0 {
+        return Bsdf { mirror: color, ..*base };
+    }
+    let alpha = metal.roughness * metal.roughness;
+    let shininess = (2.0 / (alpha * alpha) - 2.0).clamp(0.0, 1e6);
+    let matt = color * (0.5 * alpha);
+    Bsdf { mirror: color * (1.0 - metal.roughness), specular: color, shininess, diffuse: matt, ambient: matt, ..*base }
 }
 
 #[inline]

@@ -38,7 +38,8 @@ const ROOMS: &[Room] = &[
     Room { name: "statistics", may_use: &[] },
     // Patterns are read a little inside the surface, by as much as textures say.
     Room { name: "interaction", may_use: &["texture"] },
-    Room { name: "material", may_use: &["texture", "interaction"] },
+    // Metals are known by their indices.
+    Room { name: "material", may_use: &["texture", "interaction", "optics"] },
     Room { name: "task", may_use: &["interaction"] },
     Room { name: "observe", may_use: &["interaction", "task"] },
     Room { name: "geometry", may_use: &["accel", "shape", "csg", "texture", "interaction", "task"] },

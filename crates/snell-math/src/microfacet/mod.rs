@@ -8,7 +8,7 @@
 //! All directions are unit vectors in the surface's frame, +z its normal, and leave the surface; `wo` has z > 0, so a surface
 //! seen from behind is turned over first. η = η_o / η_i is the index on the side of `wo` over that on the other, as everywhere.
 //! Densities and the functions of reflection and transmission are per steradian; the cosine with the normal is not in them, and
-//! neither is Fresnel's share. Transmission is of power: radiance is multiplied by 1 / η² besides.
+//! neither is Fresnel's share. Transmission is of power: radiance is multiplied by η² besides.
 
 mod albedo;
 mod compensation;

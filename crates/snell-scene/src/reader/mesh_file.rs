@@ -97,11 +97,14 @@ impl MaterialFile {
                 fresnel: d.fresnel,
                 reflect: texture(d.reflect),
                 transmit: texture(d.transmit),
+                roughness: 0.0,
+                film: None,
                 medium: Medium::default(),
                 priority: 0,
             }),
             name: self.name,
             shininess: self.shininess,
+            metal: None,
             one_sided: false,
         }
     }

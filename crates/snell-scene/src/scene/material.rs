@@ -3,6 +3,7 @@
 use snell_math::{Dispersion, Rgb};
 
 use super::texture::Texture;
+use crate::catalogue;
 use crate::table::Id;
 
 /// A material: the lecture's terms, each of which may be absent.
@@ -24,6 +25,8 @@ pub struct Material {
     pub mirror: Option<Id<Texture>>,
     /// Where it is transparent.
     pub dielectric: Option<Dielectric>,
+    /// Where it is a metal.
+    pub metal: Option<Metal>,
     /// Seen and lit from its outward side alone, as the Standard Procedural Databases take their opaque surfaces: light
     /// from behind the outward normal gives nothing, from wherever the surface is seen.
     pub one_sided: bool,
@@ -41,10 +44,45 @@ pub struct Dielectric {
     pub reflect: Id<Texture>,
     /// The coefficient of the refracted ray.
     pub transmit: Id<Texture>,
+    /// How rough the boundary is, from 0, which is smooth, to 1.
+    pub roughness: f32,
+    /// A thin film on it.
+    pub film: Option<Film>,
     /// What light meets inside.
     pub medium: Medium,
     /// Where bodies overlap, the one of higher priority is there; at equal priority, the one entered last.
     pub priority: i32,
+}
+
+/// A thin film on a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    /// Its thickness in nanometres.
+    pub thickness_nm: f64,
+    /// Its index of refraction.
+    pub ior: Dispersion,
+}
+
+/// A metal's surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Metal {
+    /// What it is.
+    pub index: MetalIndex,
+    /// How rough it is, from 0, which is a mirror, to 1.
+    pub roughness: f32,
+    /// A thin film on it.
+    pub film: Option<Film>,
+}
+
+/// What a metal is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MetalIndex {
+    /// One whose indices were measured.
+    Measured(&'static catalogue::Metal),
+    /// One complex index n + i k at all wavelengths.
+    Constant([f64; 2]),
+    /// One that reflects this colour of white light that falls on it straight.
+    Color(Rgb),
 }
 
 /// The inside of a transparent body. Coefficients are per world unit of length.

@@ -24,7 +24,7 @@ pub use drawing::{
 };
 pub use expression::{Expression, ExpressionError};
 pub use light::{Falloff, Light, LightKind};
-pub use material::{Dielectric, Material, Medium};
+pub use material::{Dielectric, Film, Material, Medium, Metal, MetalIndex};
 pub use mesh::Mesh;
 pub use object::{CsgOperation, Grid, Object, ObjectKind, Prototype, Shape};
 pub use plot::{Align, Axis, AxisPlace, CurveKind, Plot, PlotCurve, PlotFit, PlotLabel, Ticks};

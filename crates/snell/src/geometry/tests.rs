@@ -20,6 +20,8 @@ fn materials(scene: &mut Scene) -> [Id<Material>; 2] {
         fresnel: true,
         reflect: white,
         transmit: white,
+        roughness: 0.0,
+        film: None,
         medium: Medium::default(),
         priority: 0,
     };

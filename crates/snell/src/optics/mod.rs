@@ -10,6 +10,7 @@ mod complex;
 mod conductor;
 mod fresnel;
 mod medium;
+mod metal;
 mod reflection;
 mod refraction;
 mod thin_film;
@@ -21,6 +22,7 @@ pub use fresnel::{
     fresnel_dielectric_polarized,
 };
 pub use medium::{beer_lambert, henyey_greenstein};
+pub use metal::Metal;
 pub use reflection::{reflect, reflect_lanes};
 pub use refraction::{cos_transmitted, critical_angle, refract, refract_lanes};
 pub use thin_film::{FilmShares, ThinFilm, thin_film};

@@ -23,7 +23,16 @@ fn scene() -> CompiledScene {
     let [white, half] = [1.0, 0.5].map(|value| scene.textures.push(Texture::constant(Rgb::gray(value))));
     let ior = snell_math::Dispersion::Constant(1.5);
     let medium = Medium { absorption: Rgb::new(0.1, 0.5, 0.9), ..Medium::default() };
-    let glass = Dielectric { ior, fresnel: true, reflect: white, transmit: white, medium, priority: 0 };
+    let glass = Dielectric {
+        ior,
+        fresnel: true,
+        reflect: white,
+        transmit: white,
+        roughness: 0.0,
+        film: None,
+        medium,
+        priority: 0,
+    };
     let kinds = [
         Material { dielectric: Some(glass), specular: Some(half), shininess: 20.0, ..Material::default() },
         Material { diffuse: Some(half), ..Material::default() },

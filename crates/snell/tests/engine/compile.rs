@@ -115,6 +115,8 @@ fn glass_mesh(faces: usize) -> Scene {
         fresnel: true,
         reflect: white,
         transmit: white,
+        roughness: 0.0,
+        film: None,
         medium: Medium::default(),
         priority: 0,
     };

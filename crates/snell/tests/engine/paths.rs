@@ -154,6 +154,24 @@ fn what_loses_no_light_is_invisible_in_a_white_world() {
              [[object]]\nsphere = { radius = 0.7, center = [0.4, 0, 0] }\nmaterial = 'b'",
         ),
         (
+            "frosted glass",
+            "[material.a]\ndielectric = { ior = 1.5, roughness = 0.6 }\n[[object]]\nsphere = { radius = 1 }\nmaterial = 'a'",
+        ),
+        (
+            "frosted water in frosted glass",
+            "[material.a]\ndielectric = { ior = 1.5, roughness = 0.3 }\n[material.b]\ndielectric = { ior = 1.33, roughness = 0.8 }\n\
+             [[object]]\nsphere = { radius = 1 }\nmaterial = 'a'\n[[object]]\nsphere = { radius = 0.7 }\nmaterial = 'b'",
+        ),
+        (
+            "brushed metal",
+            "[material.a]\nmetal = { color = 1, roughness = 0.7 }\n[[object]]\nsphere = { radius = 1 }\nmaterial = 'a'",
+        ),
+        (
+            "a soap bubble",
+            "[material.a]\ndielectric = { ior = 1, film = { thickness = 420, ior = 1.33 } }\n\
+             [[object]]\nsphere = { radius = 1 }\nmaterial = 'a'",
+        ),
+        (
             "grey milk",
             "[material.a]\ndielectric = { ior = 1.3, scattering = { distance = 0.4 } }\n[[object]]\nsphere = { radius = 0.8 }\nmaterial = 'a'",
         ),
@@ -177,6 +195,7 @@ fn what_loses_no_light_is_invisible_in_a_white_world() {
         let tolerance = match name {
             "dispersive glass" => 0.02,
             "coloured milk" | "coloured fog" => 0.01,
+            "frosted glass" | "frosted water in frosted glass" | "brushed metal" => 4e-3,
             _ => 1e-3,
         };
         for (found, expected) in found.to_array().into_iter().zip(expected.to_array()) {

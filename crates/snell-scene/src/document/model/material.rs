@@ -27,6 +27,8 @@ pub struct Material {
     pub emission: Option<Box<Located<Paint>>>,
     /// Makes it a transparent body.
     pub dielectric: Option<Box<Located<Dielectric>>>,
+    /// Makes it a metal. `path` shows it as it is; `whitted` as a mirror of its colour.
+    pub metal: Option<Box<Located<Metal>>>,
     /// Lit on its outward side alone.
     pub one_sided: bool,
 }
@@ -41,6 +43,7 @@ impl Default for Material {
             mirror: None,
             emission: None,
             dielectric: None,
+            metal: None,
             one_sided: false,
         }
     }
@@ -69,6 +72,11 @@ pub struct Dielectric {
     pub reflect: Option<Located<Paint>>,
     /// The coefficient of the refracted ray: 1 with `fresnel`, else to be given.
     pub transmit: Option<Located<Paint>>,
+    /// How rough the surface is: 0 is smooth, 1 as rough as can be. `path` shows it, `whitted` knows smooth surfaces alone.
+    #[schemars(range(min = 0, max = 1))]
+    pub roughness: f32,
+    /// A thin film on the surface, whose colours `path` shows: a soap bubble's, oil's, a coating's.
+    pub film: Option<Film>,
     /// How the inside absorbs light on its way.
     pub absorption: Option<Absorption>,
     /// How the inside scatters light, as milk does.
@@ -85,12 +93,54 @@ impl Default for Dielectric {
             fresnel: true,
             reflect: None,
             transmit: None,
+            roughness: 0.0,
+            film: None,
             absorption: None,
             scattering: None,
             priority: 0,
         }
     }
 }
+
+/// A thin film on a surface.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("x-example" = "[material.soap]\ndielectric = { ior = 1, film = { thickness = 400, ior = 1.33 } }\n"))]
+pub struct Film {
+    /// Its thickness.
+    #[schemars(range(min = 0, max = 100000), extend("x-unit" = "nanometres"))]
+    pub thickness: f64,
+    /// Its index of refraction, as that of a body.
+    #[schemars(extend("minimum" = 0.1, "maximum" = 100))]
+    pub ior: Located<Ior>,
+}
+
+/// A metal: what it is by exactly one of `of`, `index` and `color`.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+#[schemars(
+    extend("oneOf" = [{"required": ["of"]}, {"required": ["index"]}, {"required": ["color"]}]),
+    extend("x-example" = "[material.ring]\nmetal = { of = \"gold\", roughness = 0.2 }\n"),
+)]
+pub struct Metal {
+    /// The name of a metal whose indices were measured, such as "gold", "silver", "copper" or "aluminium".
+    pub of: Option<Located<String>>,
+    /// The complex index of refraction, n and k, at all wavelengths.
+    pub index: Option<Located<ComplexIndex>>,
+    /// The colour of white light that falls on it straight.
+    pub color: Option<Located<Color>>,
+    /// How rough it is: 0 is a mirror, 1 as rough as can be.
+    #[schemars(range(min = 0, max = 1))]
+    pub roughness: f32,
+    /// A thin film on it.
+    pub film: Option<Film>,
+}
+
+/// n and k.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(transparent)]
+#[schemars(inline, transparent)]
+pub struct ComplexIndex(#[schemars(inner(range(min = 0, max = 100)))] pub [f64; 2]);
 
 /// An index of refraction: a number, a name, or a formula.
 pub type Ior = Either<f64, Either<String, IorFormula>>;

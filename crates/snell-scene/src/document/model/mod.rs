@@ -29,7 +29,10 @@ pub use camera::{
 pub use drawing::{CameraMark, Drawing, GridMark, GroundGrid, HiddenLines, LineMark, PointMark, StrokeBy};
 pub use formula::{Formula, Quantity};
 pub use light::{DirectionalLight, Falloff, FalloffLaw, Light, PointLight, PolynomialFalloff, SpotLight};
-pub use material::{Absorption, Cauchy, Dielectric, Ior, IorFormula, Material, MaterialChoice, Scattering, Sellmeier};
+pub use material::{
+    Absorption, Cauchy, ComplexIndex, Dielectric, Film, Ior, IorFormula, Material, MaterialChoice, Metal, Scattering,
+    Sellmeier,
+};
 pub use mesh::Mesh;
 pub use object::{Grid, Object, Step, StepVectors};
 pub use plot::{

@@ -3,9 +3,10 @@
 use snell_math::{Rgb, portable};
 
 use super::Resolver;
-use crate::diagnostic::Diagnostic;
+use crate::catalogue;
+use crate::diagnostic::{Diagnostic, did_you_mean};
 use crate::document::model::{self, Either, Located, MaterialChoice, Paint};
-use crate::scene::{Dielectric, Material, Medium};
+use crate::scene::{Dielectric, Film, Material, Medium, Metal, MetalIndex};
 use crate::table::Id;
 
 /// The diffuse colour of objects without a material.
@@ -22,6 +23,7 @@ impl Resolver<'_> {
             shininess: material.shininess,
             mirror: material.mirror.as_ref().map(|paint| self.term(paint)),
             dielectric: material.dielectric.as_ref().map(|dielectric| self.dielectric(dielectric)),
+            metal: material.metal.as_ref().map(|metal| self.metal(metal)),
             one_sided: material.one_sided,
         }
     }
@@ -62,6 +64,7 @@ impl Resolver<'_> {
         }
         let ior = self.ior(&dielectric.ior);
         let medium = self.medium(dielectric);
+        let film = dielectric.film.as_ref().map(|film| self.film(film));
         let mut coefficient = |paint: &Option<Located<Paint>>| match paint {
             Some(paint) => self.term(paint),
             None => self.constant(Rgb::WHITE),
@@ -71,9 +74,55 @@ impl Resolver<'_> {
             fresnel: dielectric.fresnel,
             reflect: coefficient(&dielectric.reflect),
             transmit: coefficient(&dielectric.transmit),
+            roughness: dielectric.roughness,
+            film,
             medium,
             priority: dielectric.priority,
         }
+    }
+
+    fn metal(&mut self, located: &Located<model::Metal>) -> Metal {
+        let model::Metal { of, index, color, roughness, film } = &located.value;
+        let index = match (of, index, color) {
+            (Some(name), None, None) => self.named_metal(name),
+            (None, Some(index), None) => {
+                let model::ComplexIndex([n, k]) = index.value;
+                if n + k == 0.0 {
+                    let diagnostic =
+                        Diagnostic::error("a metal of index 0 is none").at_optional(index.span.clone(), "here");
+                    self.diagnostics.push(diagnostic.help("gold has [0.18, 3.4] for yellow light"));
+                }
+                MetalIndex::Constant([n, k])
+            }
+            (None, None, Some(color)) => MetalIndex::Color(color.value.0),
+            _ => {
+                let message = "a metal needs one of the keys `of`, `index` and `color`";
+                let diagnostic = Diagnostic::error(message).at_optional(located.span.clone(), "here");
+                self.diagnostics.push(diagnostic.help("for example `of = \"gold\"`"));
+                MetalIndex::Color(Rgb::WHITE)
+            }
+        };
+        let film = film.as_ref().map(|film| self.film(film));
+        Metal { index, roughness: *roughness, film }
+    }
+
+    /// A metal of the catalogue.
+    fn named_metal(&mut self, name: &Located<String>) -> MetalIndex {
+        if let Some(metal) = catalogue::metal(&name.value) {
+            return MetalIndex::Measured(metal);
+        }
+        let names: Vec<&str> = catalogue::metals().map(|metal| metal.key).collect();
+        let diagnostic = Diagnostic::error(format!("there is no metal {:?} of known indices", name.value))
+            .at_optional(name.span.clone(), "not in the catalogue");
+        self.diagnostics.push(match did_you_mean(&name.value, names.iter().copied()) {
+            Some(near) => diagnostic.help(format!("did you mean {near:?}?")),
+            None => diagnostic.help(format!("there are {}; or give `index` or `color`", names.join(", "))),
+        });
+        MetalIndex::Color(Rgb::WHITE)
+    }
+
+    fn film(&mut self, film: &model::Film) -> Film {
+        Film { thickness_nm: film.thickness, ior: self.ior(&film.ior) }
     }
 
     fn medium(&mut self, dielectric: &model::Dielectric) -> Medium {

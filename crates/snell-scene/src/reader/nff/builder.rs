@@ -175,6 +175,8 @@ impl Builder {
                 fresnel: false,
                 reflect: texture(Rgb::gray(specular)),
                 transmit: texture(color * transmittance),
+                roughness: 0.0,
+                film: None,
                 medium: Medium::default(),
                 priority: 0,
             }),

@@ -2,7 +2,8 @@
 //!
 //! World space; `wo` leads back along the path and `wi` on, both leaving the surface. Values have the cosine in them; densities are
 //! per steradian. The lobes are those of `whitted`, in physical units: Lambert's k_d / π; Phong's highlight as
-//! k_s / π · (R·L)ⁿ, which under a light without extent is what `whitted` shows; mirrors; the boundaries of bodies.
+//! k_s / π · (R·L)ⁿ, which under a light without extent is what `whitted` shows; mirrors; the boundaries of bodies; and [rough
+//! ones](super::rough).
 //!
 //! Radiance is multiplied by (η_o / η_i)² where it is refracted (Veach, "Robust Monte Carlo Methods for Light Transport Simulation",
 //! 1997, section 5.2), power is not.
@@ -12,9 +13,11 @@ use std::f64::consts::PI;
 use snell_math::warp::cosine_hemisphere;
 use snell_math::{Normal3, Vector3, portable};
 
+use super::reflector::Reflector;
+use super::rough::Rough;
 use super::spectra::{BLACK, Spectral, is_black, mean, plus, scaled};
 use crate::interaction::SurfaceInteraction;
-use crate::optics::{fresnel_dielectric, reflect, refract};
+use crate::optics::{reflect, refract};
 
 /// Which way light is followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,7 +30,7 @@ pub enum Transport {
 
 /// The colours of a surface at the wavelengths of a path.
 #[derive(Clone, Copy, Debug)]
-pub struct SurfaceColors {
+pub struct SurfaceColors<'a> {
     /// See [`crate::material::Bsdf::diffuse`].
     pub diffuse: Spectral,
     /// See [`crate::material::Bsdf::specular`].
@@ -38,11 +41,15 @@ pub struct SurfaceColors {
     pub mirror: Spectral,
     /// Lit and seen from the outward side alone.
     pub one_sided: bool,
-    /// See [`crate::material::Interface`].
+    /// A smooth metal.
+    pub metal: Option<Reflector>,
+    /// See [`crate::material::Interface`]; a smooth one.
     pub boundary: Option<BoundaryColors>,
+    /// A rough boundary or metal.
+    pub rough: Option<Rough<'a>>,
 }
 
-/// The boundary of a transparent body at the wavelengths of a path.
+/// The smooth boundary of a transparent body at the wavelengths of a path.
 #[derive(Clone, Copy, Debug)]
 pub struct BoundaryColors {
     /// The shares follow Fresnel's equations, scaled by the coefficients; or else are the coefficients.
@@ -51,15 +58,13 @@ pub struct BoundaryColors {
     pub reflect: Spectral,
     /// The coefficient of the refracted ray.
     pub transmit: Spectral,
-    /// The indices of refraction on the side of `wo`.
-    pub before: Spectral,
-    /// And on the other.
-    pub beyond: Spectral,
+    /// What it reflects by Fresnel's equations.
+    pub reflector: Reflector,
 }
 
 /// The lobes of a surface where a path met it.
 #[derive(Clone, Copy, Debug)]
-pub struct Lobes {
+pub struct Lobes<'a> {
     /// Unit length, on the side of `wo`.
     normal: Vector3,
     flat: Vector3,
@@ -70,12 +75,21 @@ pub struct Lobes {
     mirror: Spectral,
     reflected: Spectral,
     refracted: Spectral,
+    rough: Option<RoughLobe<'a>>,
     /// Of the hero: η_o / η_i.
     eta: f64,
     /// The wavelengths go different ways where they are refracted.
     disperses: bool,
-    /// With which probability each lobe is chosen: diffuse, highlight, mirror, reflected, refracted.
-    shares: [f64; 5],
+    /// With which probability each lobe is chosen: diffuse, highlight, rough, mirror, reflected, refracted.
+    shares: [f64; 6],
+}
+
+/// A rough surface with its frame, and where `wo` is in it.
+#[derive(Clone, Copy, Debug)]
+struct RoughLobe<'a> {
+    rough: Rough<'a>,
+    tangents: [Vector3; 2],
+    wo: Vector3,
 }
 
 /// A direction that a path goes on in.
@@ -85,7 +99,7 @@ pub struct Scattered {
     pub wi: Vector3,
     /// What the light of that direction is multiplied by: value over density.
     pub weight: Spectral,
-    /// The density of the direction among all that are not specular, and the cosine with the surface; `None` for a specular one.
+    /// The density of the direction among all that are not specular; `None` for a specular one.
     pub density: Option<f64>,
     /// It goes to the other side.
     pub crosses: bool,
@@ -95,49 +109,56 @@ pub struct Scattered {
     pub compression: f64,
 }
 
-impl Lobes {
+impl<'a> Lobes<'a> {
     /// Of a surface seen from `wo`.
-    pub fn new(colors: &SurfaceColors, interaction: &SurfaceInteraction, wo: Vector3) -> Self {
+    pub fn new(colors: &SurfaceColors<'a>, interaction: &SurfaceInteraction, wo: Vector3) -> Self {
         let flat = interaction.geometric_normal.face_forward(wo).as_vector();
-        let shading = interaction.shading_normal;
         let side = if interaction.is_outward(wo) { 1.0 } else { -1.0 };
-        let shading = shading.as_vector() * side;
+        let shading = interaction.shading_normal.as_vector() * side;
         let normal = if shading.dot(wo) > 0.0 { shading } else { flat };
         let hidden = colors.one_sided && side < 0.0;
         let [diffuse, specular] = if hidden { [BLACK; 2] } else { [colors.diffuse, colors.specular] };
         let (mut reflected, mut refracted, mut eta, mut disperses) = (BLACK, BLACK, 1.0, false);
-        if let Some(boundary) = &colors.boundary {
-            let cosine = normal.dot(wo);
+        let mut mirror = colors.mirror;
+        let cosine = normal.dot(wo).clamp(0.0, 1.0);
+        if let Some(metal) = &colors.metal {
+            mirror = plus(mirror, metal.shares(cosine));
+        }
+        if let Some(BoundaryColors { fresnel, reflect, transmit, reflector }) = &colors.boundary {
+            let beyond = reflector.beyond();
+            let sine_squared = (1.0 - cosine) * (1.0 + cosine);
             for i in 0..reflected.len() {
-                let (before, beyond) = (boundary.before[i], boundary.beyond[i]);
-                let (reflect, transmit) = (boundary.reflect[i], boundary.transmit[i]);
-                let share = fresnel_dielectric(cosine, before, beyond);
-                let is_total = share >= 1.0;
-                (reflected[i], refracted[i]) = match (boundary.fresnel, is_total) {
-                    (true, true) => (reflect, 0.0),
-                    (true, false) => (reflect * share, transmit * (1.0 - share)),
-                    (false, true) => (reflect + transmit, 0.0),
-                    (false, false) => (reflect, transmit),
+                let eta = reflector.before[i] / beyond[i];
+                let share = reflector.share(i, cosine);
+                let is_total = eta * eta * sine_squared >= 1.0 || share >= 1.0;
+                (reflected[i], refracted[i]) = match (fresnel, is_total) {
+                    (true, true) => (reflect[i], 0.0),
+                    (true, false) => (reflect[i] * share, transmit[i] * (1.0 - share)),
+                    (false, true) => (reflect[i] + transmit[i], 0.0),
+                    (false, false) => (reflect[i], transmit[i]),
                 };
             }
-            eta = boundary.before[0] / boundary.beyond[0];
-            disperses = boundary.before.iter().any(|&index| index != boundary.before[0])
-                || boundary.beyond.iter().any(|&index| index != boundary.beyond[0]);
+            eta = reflector.before[0] / beyond[0];
+            disperses = reflector.disperses();
         }
-        let shininess = colors.shininess;
+        let rough = colors.rough.map(|rough| {
+            let (x, y) = normal.orthonormal_basis();
+            RoughLobe { rough, tangents: [x, y], wo: Vector3::new(wo.dot(x), wo.dot(y), wo.dot(normal)) }
+        });
         let mut lobes = Self {
             normal,
             flat,
             wo,
             diffuse,
             specular,
-            shininess,
-            mirror: colors.mirror,
+            shininess: colors.shininess,
+            mirror,
             reflected,
             refracted,
+            rough,
             eta,
             disperses,
-            shares: [0.0; 5],
+            shares: [0.0; 6],
         };
         lobes.choose();
         lobes
@@ -150,18 +171,19 @@ impl Lobes {
         let albedos = [
             mean(self.diffuse),
             mean(self.specular) * 2.0 / (self.shininess + 1.0),
+            self.rough.as_ref().map_or(0.0, |lobe| lobe.rough.albedo(lobe.wo.z())),
             mean(self.mirror),
             of_hero(self.reflected),
             of_hero(self.refracted),
         ];
         let sum: f64 = albedos.iter().sum();
-        self.shares = if sum > 0.0 { albedos.map(|albedo| albedo / sum) } else { [0.0; 5] };
+        self.shares = if sum > 0.0 { albedos.map(|albedo| albedo / sum) } else { [0.0; 6] };
     }
 
     /// True where lights can be asked and light from elsewhere be gathered: where some lobe is not specular.
     #[inline]
     pub fn is_lit(&self) -> bool {
-        !(is_black(self.diffuse) && is_black(self.specular))
+        self.rough.is_some() || !(is_black(self.diffuse) && is_black(self.specular))
     }
 
     /// The cosine of a direction with the surface as it is, not as it is shaded; negative for one that goes to the other side.
@@ -172,18 +194,26 @@ impl Lobes {
 
     /// What the lobes that are not specular make of light from `wi`, cosine included, and the density with which they would choose
     /// that direction.
-    pub fn evaluate(&self, wi: Vector3) -> (Spectral, f64) {
-        let cosine = self.normal.dot(wi);
-        if cosine <= 0.0 || self.flat.dot(wi) <= 0.0 {
+    pub fn evaluate(&self, wi: Vector3, transport: Transport) -> (Spectral, f64) {
+        let (cosine, flat_cosine) = (self.normal.dot(wi), self.flat.dot(wi));
+        if cosine * flat_cosine <= 0.0 {
             return (BLACK, 0.0);
         }
-        let mut value = scaled(self.diffuse, cosine / PI);
-        let mut density = self.shares[0] * cosine / PI;
-        if self.shares[1] > 0.0 {
-            let mirrored = reflect(self.wo, Normal3::from(self.normal));
-            let highlight = self.highlight(mirrored.dot(wi));
-            value = plus(value, scaled(self.specular, highlight / PI));
-            density += self.shares[1] * highlight * (self.shininess + 1.0) / (2.0 * PI);
+        let (mut value, mut density) = (BLACK, 0.0);
+        if let Some(RoughLobe { rough, tangents: [x, y], wo }) = &self.rough {
+            let local = Vector3::new(wi.dot(*x), wi.dot(*y), cosine);
+            let (of_rough, of_choice) = rough.evaluate(*wo, local, transport);
+            (value, density) = (of_rough, self.shares[2] * of_choice);
+        }
+        if cosine > 0.0 {
+            value = plus(value, scaled(self.diffuse, cosine / PI));
+            density += self.shares[0] * cosine / PI;
+            if self.shares[1] > 0.0 {
+                let mirrored = reflect(self.wo, Normal3::from(self.normal));
+                let highlight = self.highlight(mirrored.dot(wi));
+                value = plus(value, scaled(self.specular, highlight / PI));
+                density += self.shares[1] * highlight * (self.shininess + 1.0) / (2.0 * PI);
+            }
         }
         (value, density)
     }
@@ -195,33 +225,50 @@ impl Lobes {
 
     /// A direction to go on in, by a number in [0, 1) for the lobe and two for the direction; `None` where light ends.
     pub fn sample(&self, lobe: f64, u: [f64; 2], transport: Transport) -> Option<Scattered> {
-        let [diffuse, highlight, mirror, reflected, refracted] = self.shares;
-        let mut rest = lobe;
-        if rest < diffuse + highlight {
-            let (x, y) = self.normal.orthonormal_basis();
-            let wi = if rest < diffuse {
+        let [diffuse, highlight, rough, mirror, reflected, refracted] = self.shares;
+        if lobe < diffuse + highlight + rough {
+            let wi = if lobe < diffuse {
+                let (x, y) = self.normal.orthonormal_basis();
                 let local = cosine_hemisphere(u);
                 x * local.x() + y * local.y() + self.normal * local.z()
-            } else {
+            } else if lobe < diffuse + highlight {
                 self.sample_highlight(u)
+            } else {
+                let RoughLobe { rough: surface, tangents: [x, y], wo } = self.rough.as_ref()?;
+                // Again a number in [0, 1).
+                let choice = ((lobe - diffuse - highlight) / rough).clamp(0.0, 1.0_f64.next_down());
+                let local = surface.sample(*wo, choice, u)?;
+                *x * local.x() + *y * local.y() + self.normal * local.z()
             };
             let wi = wi.normalize();
-            let (value, density) = self.evaluate(wi);
-            return (density > 0.0).then(|| Scattered {
-                wi,
-                weight: scaled(value, 1.0 / density),
-                density: Some(density),
-                crosses: false,
-                hero_alone: false,
-                compression: 1.0,
+            let (value, density) = self.evaluate(wi, transport);
+            let crosses = self.flat.dot(wi) < 0.0;
+            let (hero_alone, compression) = match &self.rough {
+                Some(lobe) if crosses => {
+                    let eta = lobe.rough.eta();
+                    (lobe.rough.reflector.disperses(), 1.0 / (eta * eta))
+                }
+                _ => (false, 1.0),
+            };
+            return (density > 0.0).then(|| {
+                let mut weight = scaled(value, 1.0 / density);
+                if hero_alone && !self.is_hero_alone() {
+                    // What the hero counts for the others is in the colours of a path that has given them up.
+                    weight[0] /= weight.len() as f64;
+                }
+                Scattered { wi, weight, density: Some(density), crosses, hero_alone, compression }
             });
         }
-        rest -= diffuse + highlight;
+        let rest = lobe - (diffuse + highlight + rough);
         if rest < mirror + reflected {
             let (color, share) = if rest < mirror { (self.mirror, mirror) } else { (self.reflected, reflected) };
             return self.reflect(color, share);
         }
         if refracted > 0.0 { self.refract(transport) } else { None }
+    }
+
+    fn is_hero_alone(&self) -> bool {
+        self.rough.as_ref().is_some_and(|lobe| lobe.rough.hero_alone)
     }
 
     fn sample_highlight(&self, [u, v]: [f64; 2]) -> Vector3 {
@@ -253,7 +300,7 @@ impl Lobes {
             Transport::Radiance => 1.0 / compression,
             Transport::Power => 1.0,
         };
-        let weight = scaled(self.refracted, factor / self.shares[4]);
+        let weight = scaled(self.refracted, factor / self.shares[5]);
         Some(Scattered { wi, weight, density: None, crosses: true, hero_alone: self.disperses, compression })
     }
 }

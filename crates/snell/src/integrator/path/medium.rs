@@ -13,10 +13,21 @@ use super::{Path, Step};
 use crate::geometry::{Geometry, QueryScratch};
 use crate::interaction::LaneSurface;
 use crate::observe::Observer;
-use crate::task::{Inside, RayKind, Term};
+use crate::task::{Inside, MediumStack, RayKind, Term};
 
 /// How many boundaries that do not bend light a shadow ray goes through at most.
 const MAX_PASSES: u32 = 4096;
+
+/// A straight way to a light.
+#[derive(Clone, Copy, Debug)]
+pub struct WayToLight {
+    /// Where it begins and where it goes, unit length.
+    pub ray: Ray,
+    /// How far the light is.
+    pub distance: f64,
+    /// The bodies where it begins.
+    pub media: MediumStack,
+}
 
 impl Path {
     /// What happens on the way to a distance. True where the path was scattered before it came there.
@@ -62,7 +73,9 @@ impl Path {
             let weight = arriving.density.map_or(1.0, |asked| asked / (asked + density));
             let value = [density * weight; 4];
             let term = Term::Scattering(self.lights.name(arriving.light));
-            self.ask(step, &arriving, Ray::new(point, arriving.wi), arriving.distance, value, term);
+            let ray = Ray::new(point, arriving.wi);
+            let way = WayToLight { ray, distance: arriving.distance, media: step.task.media };
+            self.ask(step, &arriving, way, value, term);
         }
         let local = henyey_greenstein(u, anisotropy);
         let (x, y) = forward.orthonormal_basis();
@@ -80,32 +93,31 @@ impl Path {
         &self,
         step: &mut Step<'_, '_, '_, O>,
         arriving: &Arriving,
-        ray: Ray,
-        distance: f64,
+        way: WayToLight,
         value: Spectral,
         term: Term,
     ) {
         // The place itself is not in its own way.
-        let distance = distance * (1.0 - 1e-9);
+        let way = WayToLight { distance: way.distance * (1.0 - 1e-9), ..way };
         let light = match arriving.light_over_density {
             Some(light) => light,
-            None => match self.light_met(step, arriving, &ray) {
+            None => match self.light_met(step, arriving, &way.ray) {
                 Some(light) => light,
                 None => return,
             },
         };
         let value = times(times(step.path.throughput, value), light);
-        let is_inside = step.out.media.current(step.task.media).is_some();
+        let is_inside = step.out.media.current(way.media).is_some();
         if !(is_inside || self.materials.some_pass()) {
             let color = step.path.wavelengths.color(value);
             if !color.is_black() {
-                let question = step.question(ray, distance, term, color);
+                let question = step.question(way, term, color);
                 step.out.ask(question);
             }
             return;
         }
-        let left = self.way_to_light(step, ray, distance);
-        let question = step.question(ray, distance, term, step.path.wavelengths.color(times(value, left)));
+        let left = self.way_to_light(step, way);
+        let question = step.question(way, term, step.path.wavelengths.color(times(value, left)));
         step.out.answer(&question, !is_black(left));
     }
 
@@ -124,9 +136,9 @@ impl Path {
     }
 
     /// What is left of light on a straight way through boundaries that do not bend it; nothing where something is in the way.
-    fn way_to_light<O: Observer>(&self, step: &mut Step<'_, '_, '_, O>, mut ray: Ray, mut distance: f64) -> Spectral {
+    fn way_to_light<O: Observer>(&self, step: &mut Step<'_, '_, '_, O>, way: WayToLight) -> Spectral {
+        let WayToLight { mut ray, mut distance, mut media } = way;
         let nm = step.path.wavelengths.nm();
-        let mut media = step.task.media;
         let mut left = super::spectra::WHITE;
         let mut scratch = QueryScratch::default();
         for _ in 0..MAX_PASSES {

@@ -16,6 +16,8 @@ mod lobes;
 mod materials;
 mod medium;
 mod photons;
+mod reflector;
+mod rough;
 mod sample;
 mod spectra;
 
@@ -34,7 +36,8 @@ use crate::task::{Crossing, Cut, Inside, MediumStack, RayKind, RayRows, RayTask,
 use emission::{Emission, Targets};
 use lights::Lights;
 use lobes::{Lobes, Transport};
-use materials::PathMaterials;
+use materials::{Meeting, PathMaterials};
+use medium::WayToLight;
 pub use photons::{PhotonMap, PhotonPasses};
 use sample::Vertex;
 pub use sample::{PathSample, Purpose};
@@ -244,13 +247,17 @@ impl Path {
         if !bsdf.emission.is_black() && (!bsdf.one_sided || interaction.is_outward(wo)) {
             self.find_light(step, interaction, bsdf.emission);
         }
-        let nm = step.path.wavelengths.nm();
-        let sides = crossing.map(|Crossing { before, beyond, .. }| [before, beyond]);
-        let is_tinted = interaction.vertex_color.is_some();
-        let colors = self.materials.colors(&self.colors, number, &bsdf, is_tinted, sides, nm);
+        let meeting = Meeting {
+            sides: crossing.map(|Crossing { before, beyond, .. }| [before, beyond]),
+            around: step.out.media.current(step.task.media),
+            is_tinted: interaction.vertex_color.is_some(),
+            nm: step.path.wavelengths.nm(),
+            hero_alone: step.path.wavelengths.is_hero_alone(),
+        };
+        let colors = self.materials.colors(&self.colors, number, &bsdf, &meeting);
         let lobes = Lobes::new(&colors, interaction, wo);
         if lobes.is_lit() {
-            self.ask_light(step, interaction, &lobes);
+            self.ask_light(step, interaction, &lobes, crossing);
             if let Some(photons) = &self.photons {
                 let found = photons.gather(interaction, &lobes, step.path.wavelengths.is_hero_alone());
                 step.add(Term::Photons, found);
@@ -292,14 +299,20 @@ impl Path {
     }
 
     /// Asks one light for what it gives a surface.
-    fn ask_light<O: Observer>(&self, step: &mut Step<'_, '_, '_, O>, interaction: &SurfaceInteraction, lobes: &Lobes) {
+    fn ask_light<O: Observer>(
+        &self,
+        step: &mut Step<'_, '_, '_, O>,
+        interaction: &SurfaceInteraction,
+        lobes: &Lobes<'_>,
+        crossing: Option<Crossing>,
+    ) {
         let [choice, u, v, _] = step.path.draw(Purpose::Light);
         let point = interaction.point;
         let wavelengths = &step.path.wavelengths;
         let Some(arriving) = self.lights.sample(step.scene, &self.colors, wavelengths, point, choice, [u, v]) else {
             return;
         };
-        let (value, density) = lobes.evaluate(arriving.wi);
+        let (value, density) = lobes.evaluate(arriving.wi, Transport::Radiance);
         if density == 0.0 {
             return;
         }
@@ -308,7 +321,12 @@ impl Path {
         let origin = LaneSurface::<f64>::from(interaction).spawn_origin(arriving.wi.into());
         let from = Ray::new(origin.into(), arriving.wi);
         let distance = arriving.distance - (from.origin - point).dot(arriving.wi);
-        self.ask(step, &arriving, from, distance, value, Term::Diffuse(self.lights.name(arriving.light)));
+        let media = match crossing {
+            Some(crossing) if lobes.flat_cosine(arriving.wi) < 0.0 => crossing.after,
+            _ => step.task.media,
+        };
+        let way = WayToLight { ray: from, distance, media };
+        self.ask(step, &arriving, way, value, Term::Diffuse(self.lights.name(arriving.light)));
     }
 
     /// Sends the path on from a surface.
@@ -316,7 +334,7 @@ impl Path {
         &self,
         step: &mut Step<'_, '_, '_, O>,
         interaction: &SurfaceInteraction,
-        lobes: &Lobes,
+        lobes: &Lobes<'_>,
         crossing: Option<Crossing>,
     ) {
         let [lobe, u, v, roulette] = step.path.draw(Purpose::Direction);
@@ -326,7 +344,7 @@ impl Path {
         path.compression *= scattered.compression;
         match scattered.density {
             Some(density) => {
-                let (point, cosine) = (interaction.point, lobes.flat_cosine(scattered.wi));
+                let (point, cosine) = (interaction.point, lobes.flat_cosine(scattered.wi).abs());
                 path.scattered = Some(Vertex { point, density, cosine, gathers: true });
                 path.specular = 0;
             }
@@ -379,14 +397,15 @@ impl<O: Observer> Step<'_, '_, '_, O> {
     }
 
     /// A question to a light, of a value that it adds if nothing is in the way.
-    fn question(&self, ray: Ray, distance: f64, term: Term, value: Rgb) -> ShadowQuestion {
+    fn question(&self, way: WayToLight, term: Term, value: Rgb) -> ShadowQuestion {
+        let WayToLight { ray, distance, media } = way;
         ShadowQuestion {
             ray,
             distance,
             terms: [(term, value), (term, Rgb::BLACK)],
             sample: self.task.sample,
             task: self.task.id,
-            media: self.task.media,
+            media,
             extinction_scale: 1.0,
         }
     }

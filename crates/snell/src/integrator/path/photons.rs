@@ -18,6 +18,7 @@ use snell_math::{Point3, Ray, Vector3};
 use super::emission::{Emission, Emitted};
 use super::lights::LightIndex;
 use super::lobes::{Lobes, Transport};
+use super::materials::Meeting;
 use super::spectra::{BLACK, Spectral, WHITE, Wavelengths, is_black, largest, mean, plus, scaled, times};
 use super::{Path, ROULETTE_DEPTH};
 use crate::compile::CompiledScene;
@@ -192,10 +193,14 @@ impl Pass<'_> {
                 crossing = Some(met);
             }
             let bsdf = material.bsdf(&self.scene.textures, &interaction);
-            let sides = crossing.map(|crossing| [crossing.before, crossing.beyond]);
-            let nm = photon.wavelengths.nm();
-            let is_tinted = interaction.vertex_color.is_some();
-            let surface = self.path.materials.colors(colors, number, &bsdf, is_tinted, sides, nm);
+            let meeting = Meeting {
+                sides: crossing.map(|crossing| [crossing.before, crossing.beyond]),
+                around: buffers.media.current(photon.media),
+                is_tinted: interaction.vertex_color.is_some(),
+                nm: photon.wavelengths.nm(),
+                hero_alone: photon.wavelengths.is_hero_alone(),
+            };
+            let surface = self.path.materials.colors(colors, number, &bsdf, &meeting);
             let wo = -photon.ray.direction;
             let lobes = Lobes::new(&surface, &interaction, wo);
             if events > 0 && lobes.is_lit() {
@@ -328,7 +333,7 @@ impl PhotonMap {
     }
 
     /// What the photons around a place make of the surface there, seen along a path.
-    pub fn gather(&self, interaction: &SurfaceInteraction, lobes: &Lobes, hero_alone: bool) -> Spectral {
+    pub fn gather(&self, interaction: &SurfaceInteraction, lobes: &Lobes<'_>, hero_alone: bool) -> Spectral {
         let mut sum = BLACK;
         if self.photons.is_empty() {
             return sum;
@@ -357,11 +362,11 @@ impl PhotonMap {
                     continue;
                 }
                 let wi = -vector(photon.direction);
-                let (value, sent) = lobes.evaluate(wi);
+                let (value, sent) = lobes.evaluate(wi, Transport::Radiance);
                 if sent <= 0.0 {
                     continue;
                 }
-                let cosine = lobes.flat_cosine(wi);
+                let cosine = lobes.flat_cosine(wi).abs();
                 let ratio = self.disks * f64::from(photon.density) * cosine / sent;
                 let weight = if ratio.is_finite() { ratio / (1.0 + ratio) } else { 1.0 };
                 let power = photon.power.map(f64::from);
