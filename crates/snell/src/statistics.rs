@@ -20,11 +20,31 @@ pub struct Statistics {
     pub total_internal_reflections: u64,
     /// Samples in which NaN or an infinite value came up, and which count as black.
     pub nonfinite_samples: u64,
+    /// The first of those, in the order of rows from the top.
+    pub first_nonfinite: Option<SamplePlace>,
     /// The sum of the weights of rays that were not followed, in units of 2⁻³².
     cut_weight: u64,
 }
 
+/// One sample of a picture. Ordered by rows from the top, then from the left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct SamplePlace {
+    /// The pixel's row, from the top.
+    pub y: u32,
+    /// Its column, from the left.
+    pub x: u32,
+    /// The sample's number in the pixel's sequence.
+    pub sample: u32,
+}
+
 impl Statistics {
+    /// Counts a sample in which NaN or an infinite value came up.
+    #[cold]
+    pub fn add_nonfinite(&mut self, place: SamplePlace) {
+        self.nonfinite_samples += 1;
+        self.first_nonfinite = Some(self.first_nonfinite.map_or(place, |first| first.min(place)));
+    }
+
     /// The weight of rays that were not followed, over all camera rays: the share of the picture that was lost, if all that
     /// they would have seen were white.
     pub fn cut_weight(&self) -> f64 {
@@ -54,6 +74,10 @@ impl Statistics {
         self.max_depth = self.max_depth.max(other.max_depth);
         self.total_internal_reflections += other.total_internal_reflections;
         self.nonfinite_samples += other.nonfinite_samples;
+        self.first_nonfinite = match (self.first_nonfinite, other.first_nonfinite) {
+            (Some(first), Some(other)) => Some(first.min(other)),
+            (first, other) => first.or(other),
+        };
         self.cut_weight = self.cut_weight.saturating_add(other.cut_weight);
     }
 }
