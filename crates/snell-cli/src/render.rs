@@ -6,8 +6,9 @@ use snell::compile::CompiledScene;
 use snell::render::{RenderSettings, Rendering, render};
 use snell::scene::reader::nff;
 use snell::scene::{Diagnostic, Diagnostics, Scene};
+use snell::statistics::SamplePlace;
 
-use crate::arguments::{Preset, RenderArguments};
+use crate::arguments::{PictureArguments, Preset, RenderArguments, word};
 use crate::assets::FileAssets;
 use crate::builtin;
 use crate::console::{quoted, say, write_stdout};
@@ -15,6 +16,7 @@ use crate::diagnostics;
 use crate::failure::{FINE, Failure};
 use crate::interrupt::Interrupt;
 use crate::load::Place;
+use crate::map;
 use crate::output::Target;
 use crate::preview::{self, Kind};
 use crate::progress::RenderProgress;
@@ -23,7 +25,12 @@ use crate::statistics::{Report, Stopwatch, Times, advice, seconds_text};
 
 /// Renders as the command line says, and returns the exit code.
 pub fn run(arguments: &RenderArguments, mut watch: Stopwatch) -> Result<u8, Failure> {
+    if arguments.map.as_deref() == Some("list") {
+        map::list()?;
+        return Ok(FINE);
+    }
     // All that can be refused is refused before the work.
+    let property = arguments.map.as_deref().map(map::property).transpose()?;
     let place = Place::find(arguments.scene.as_deref().unwrap_or(builtin::DEFAULT))?;
     let target = Target::new(arguments, &place.stem())?;
     let preview = if arguments.preview { Some(Kind::of_stdout()?) } else { None };
@@ -31,7 +38,7 @@ pub fn run(arguments: &RenderArguments, mut watch: Stopwatch) -> Result<u8, Fail
     start_threads(arguments.threads)?;
 
     let assets = FileAssets::default();
-    let (scene, mut told) = read(arguments, &place, &assets)?;
+    let (scene, mut told) = read(&arguments.picture, &place, &assets)?;
     target.spares(&assets)?;
     let load = watch.lap();
 
@@ -44,6 +51,14 @@ pub fn run(arguments: &RenderArguments, mut watch: Stopwatch) -> Result<u8, Fail
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::input(Diagnostic::error(format!("signals cannot be listened to: {error}"))))?;
     let progress = RenderProgress::start(interrupt.clone(), !arguments.quiet);
+    if let Some(property) = &property {
+        map::render(&compiled, &settings, property, &target, &progress)?;
+        drop(progress);
+        if let (Some(name), false) = (target.name(), arguments.quiet) {
+            say(format_args!("wrote {name} ({}, {})", property.title(), seconds_text(watch.total())));
+        }
+        return Ok(interrupt.code().unwrap_or(FINE));
+    }
     let rendering = render(&compiled, &settings, &progress)
         .map_err(|error| Failure::input(Diagnostic::error(error.to_string())))?;
     let covered = progress.percent_covered();
@@ -56,7 +71,10 @@ pub fn run(arguments: &RenderArguments, mut watch: Stopwatch) -> Result<u8, Fail
     }
     let write = watch.lap();
 
-    let counted = Diagnostics { list: advice(&rendering.statistics, &settings), ..Diagnostics::default() };
+    let counted = Diagnostics {
+        list: advice(&rendering.statistics, &settings, &replay(arguments, &place, &rendering)),
+        ..Diagnostics::default()
+    };
     diagnostics::print(&counted);
     let times = Times { load, build, render, write, total: watch.total() };
     if !arguments.quiet {
@@ -80,6 +98,13 @@ pub fn run(arguments: &RenderArguments, mut watch: Stopwatch) -> Result<u8, Fail
     Ok(interrupt.code().unwrap_or(FINE))
 }
 
+/// The command that explains the first sample that is no number.
+fn replay(arguments: &RenderArguments, place: &Place, rendering: &Rendering) -> String {
+    let Some(SamplePlace { x, y, sample }) = rendering.statistics.first_nonfinite else { return String::new() };
+    let words = arguments.picture.words();
+    format!("snell explain {} --pixel {x},{y} --sample {sample}{words}", word(place.name()))
+}
+
 /// One pool for all that runs in parallel, where a number of threads is asked for; else it is made when first needed.
 fn start_threads(threads: Option<usize>) -> Result<(), Failure> {
     let Some(threads) = threads else { return Ok(()) };
@@ -90,7 +115,7 @@ fn start_threads(threads: Option<usize>) -> Result<(), Failure> {
 }
 
 /// The scene with the command line's word over its settings, and its warnings.
-fn read(arguments: &RenderArguments, place: &Place, assets: &FileAssets) -> Result<(Scene, Diagnostics), Failure> {
+pub fn read(arguments: &PictureArguments, place: &Place, assets: &FileAssets) -> Result<(Scene, Diagnostics), Failure> {
     let (scene, told) = place.read(&arguments.set, assets)?;
     let Some(mut scene) = scene else { return Err(Failure::scene(told)) };
     if arguments.preset == Some(Preset::Spd) {
@@ -121,8 +146,13 @@ pub fn compile(scene: &Scene, told: &mut Diagnostics) -> Result<CompiledScene, F
 }
 
 fn render_settings(arguments: &RenderArguments, scene: &Scene) -> RenderSettings {
-    let defaults = RenderSettings::from(&scene.settings);
+    let defaults = picture_settings(&arguments.picture, scene);
     RenderSettings { tile_size: arguments.tile.unwrap_or(defaults.tile_size), layers: arguments.layers, ..defaults }
+}
+
+/// How a picture is rendered, from a scene that [`read`] gave.
+pub fn picture_settings(arguments: &PictureArguments, scene: &Scene) -> RenderSettings {
+    RenderSettings { wavelength_nm: arguments.wavelength, ..RenderSettings::from(&scene.settings) }
 }
 
 /// `wrote x.png (1024x768, 0.21 s)`.
