@@ -14,6 +14,8 @@ use crate::task::{Band, Cut, Inside, RayKind, RayTask, ShadowQuestion, Term};
 pub trait Observer {
     /// False where nothing is seen, so that what would only be seen need not be computed.
     const WATCHES: bool = true;
+    /// False where surfaces, boundaries and what blocks a light are not told, which takes time.
+    const DETAILS: bool = Self::WATCHES;
 
     /// A ray was spawned; its parent is known already.
     fn ray(&mut self, task: &RayTask) {

@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use snell::explain::View;
+use snell::math::Point3;
 
 use super::PictureArguments;
 use super::drawing::coordinates;
@@ -59,10 +61,10 @@ pub struct ExplainArguments {
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 
-    /// From where the drawing sees the scene
+    /// From where the drawing sees the scene: a name, or a point of the world
     /// [default: across the plane of incidence, where angles are true]
-    #[arg(long, value_name = "plane|side|above|front|camera", hide_possible_values = true)]
-    pub view: Option<ViewName>,
+    #[arg(long, value_name = "plane|side|above|front|camera|X,Y,Z", value_parser = view, allow_hyphen_values = true)]
+    pub view: Option<View>,
 
     /// In text, where every ray begins and ends too
     #[arg(long)]
@@ -83,20 +85,26 @@ pub enum ExplainFormat {
     Png,
 }
 
-/// Names of `--view`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum ViewName {
-    Plane,
-    Side,
-    Above,
-    Front,
-    Camera,
-}
-
 fn pixel(text: &str) -> Result<[u32; 2], String> {
     let numbers: Result<Vec<u32>, _> = text.split(',').map(|word| word.trim().parse()).collect();
     numbers
         .ok()
         .and_then(|numbers| <[u32; 2]>::try_from(numbers).ok())
         .ok_or_else(|| "two whole numbers with a comma between them are needed, such as 300,200".to_owned())
+}
+
+fn view(text: &str) -> Result<View, String> {
+    Ok(match text {
+        "plane" => View::Plane,
+        "side" => View::Side,
+        "above" => View::Above,
+        "front" => View::Front,
+        "camera" => View::Camera,
+        _ => match coordinates::<3>(text) {
+            Ok([x, y, z]) => View::From(Point3::new(x, y, z)),
+            Err(_) => {
+                return Err("write `plane`, `side`, `above`, `front`, `camera`, or a point such as 4,3,9".to_owned());
+            }
+        },
+    })
 }

@@ -13,7 +13,7 @@ use clap_complete::Shell;
 use snell::scene::scene::{Shadows, Tone};
 
 pub use drawing::{DrawArguments, HiddenName, StrokeName, ViewArguments, ViewFormat};
-pub use explain::{ExplainArguments, ExplainFormat, ViewName};
+pub use explain::{ExplainArguments, ExplainFormat};
 pub use glass::{GlassArguments, GlassFormat, MediumName};
 pub use picture::{PictureArguments, word};
 

@@ -1,10 +1,10 @@
 //! An explanation as a drawing of its rays.
 
-use snell::explain::{Explanation, FigureSettings, View, figure};
+use snell::explain::{Explanation, FigureSettings, figure};
 use snell::vector::Page;
 
 use super::{Picture, failure};
-use crate::arguments::{ExplainArguments, ExplainFormat, ViewName};
+use crate::arguments::{ExplainArguments, ExplainFormat};
 use crate::draw::{self, encode};
 use crate::failure::Failure;
 
@@ -19,7 +19,8 @@ pub fn bytes(
     told: &Explanation,
     title: Option<String>,
 ) -> Result<Vec<u8>, Failure> {
-    let settings = FigureSettings { view: view(arguments), title, ..FigureSettings::default() };
+    let settings =
+        FigureSettings { view: arguments.view.clone().unwrap_or_default(), title, ..FigureSettings::default() };
     let page = figure(picture.scene, picture.settings, told, &settings).map_err(|error| failure(&error))?;
     encoded(&page, format)
 }
@@ -32,15 +33,4 @@ pub fn encoded(page: &Page, format: ExplainFormat) -> Result<Vec<u8>, Failure> {
         ExplainFormat::Text | ExplainFormat::Json | ExplainFormat::Svg => draw::Format::Svg,
     };
     encode(page, format, (page.width * PIXELS_PER_MM).round() as u32)
-}
-
-/// From where the command line wants to look.
-pub fn view(arguments: &ExplainArguments) -> View {
-    match arguments.view {
-        None | Some(ViewName::Plane) => View::Plane,
-        Some(ViewName::Side) => View::Side,
-        Some(ViewName::Above) => View::Above,
-        Some(ViewName::Front) => View::Front,
-        Some(ViewName::Camera) => View::Camera,
-    }
 }

@@ -196,7 +196,7 @@ impl<'a> Tree<'a> {
     }
 
     fn line(&mut self, share: [f64; 3], branches: &[bool], line: &str) {
-        let [r, g, b] = share;
+        let [r, g, b] = share.map(positive_zero);
         let _ = write!(self.text, "{} {r:7.4} {g:7.4} {b:7.4}  ", percent(self.told, share));
         if let Some((last, above)) = branches.split_last() {
             above.iter().for_each(|more| self.text.push_str(if *more { "│  " } else { "   " }));
@@ -212,6 +212,11 @@ impl<'a> Tree<'a> {
         let bar = if bar { "│  " } else { "   " };
         let _ = writeln!(self.text, "{bar}{}{line}{}", style::FAINT, style::NONE);
     }
+}
+
+/// Without the minus sign of what rounds to zero in four decimals.
+fn positive_zero(x: f64) -> f64 {
+    if x.abs() < 5e-5 { 0.0 } else { x }
 }
 
 /// A share as percent of the pixel, in eight columns.

@@ -213,6 +213,7 @@ impl Sample<'_, '_> {
         Some(Blocker {
             point: surface.point,
             object: object_name(self.watch.scene, surface),
+            object_number: surface.object,
             material: material_name(self.watch.scene, surface.material),
             distance: surface.t,
             absorption: step.absorption,

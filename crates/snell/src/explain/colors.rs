@@ -13,7 +13,7 @@ use crate::vector::{
 const COLORS: [[u8; 3]; 7] =
     [[8, 8, 24], [44, 30, 110], [120, 28, 132], [190, 52, 96], [232, 100, 44], [246, 170, 50], [252, 246, 190]];
 /// The bar's strip: pixels for a picture that is 640 wide.
-const STRIP: f64 = 46.0;
+const STRIP: f64 = 60.0;
 /// The steps of the bar.
 const STEPS: u32 = 128;
 
@@ -63,7 +63,7 @@ fn bar(width: u32, property: &Property, [least, most]: [f64; 2]) -> Result<Displ
     // Millimetres are pixels here, of a picture that is 640 wide.
     let (full, margin) = (640.0, 24.0);
     let mut page = Page { width: full, height: STRIP, ..Page::default() };
-    let (left, right, top, bottom) = (margin, full - margin, 20.0, 30.0);
+    let (left, right, top, bottom) = (margin, full - margin, 26.0, 37.0);
     let at = |share: f64| left + (right - left) * share;
     let mut items = Vec::new();
     // Whole numbers have a field each.
@@ -89,14 +89,14 @@ fn bar(width: u32, property: &Property, [least, most]: [f64; 2]) -> Result<Displ
         })
     };
     let title = property.title().replace('\\', "\\\\").replace('_', "\\_").replace('*', "\\*").replace('^', "\\^");
-    let size = 13.0 * (1.0_f64).min((right - left) / measure(&title, 13.0).width.max(1.0));
-    items.push(text(&title, [0.5 * full, 10.0], size));
+    let size = 17.0 * (1.0_f64).min((right - left) / measure(&title, 17.0).width.max(1.0));
+    items.push(text(&title, [0.5 * full, 13.0], size));
     for (share, label) in ticks(property, [least, most], fields) {
         let x = at(share);
         let tick = Subpath::polyline(&[[x, bottom], [x, bottom + 3.0]]);
         let stroke = Stroke { color: [0; 3], width: 0.8, dashes: Vec::new() };
         items.push(Item::Path(Path { subpaths: vec![tick], stroke: Some(stroke), fill: None }));
-        items.push(text(&label, [x, bottom + 9.0], 11.0));
+        items.push(text(&label, [x, bottom + 12.0], 15.0));
     }
     page.groups.push(Group { name: "bar".to_owned(), items });
     rasterize(&page, width)

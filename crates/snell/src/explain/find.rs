@@ -274,21 +274,24 @@ impl Look<'_> {
         }
     }
 
-    /// The opaque thing of which most light comes both by reflection at the first surface and through the body: the lesser of both.
+    /// The opaque thing of which most light comes both by reflection at the first surface and from within the body, however it went
+    /// there: the lesser of both.
     fn both_ways(&self, camera: &TracedRay) -> f64 {
-        let is_lit = |term: Term| matches!(term, Term::Diffuse(_));
-        let mirrored: Vec<(u32, f64)> = self
-            .children(camera)
-            .filter(|ray| ray.task.kind == RayKind::Reflected && !self.is_body(ray))
-            .filter_map(|ray| Some((object(ray)?, self.share(ray, is_lit))))
-            .collect();
-        let through = self.through(camera);
-        let seen = through.iter().filter(|ray| !self.is_body(ray));
-        seen.filter_map(|ray| {
-            let same = mirrored.iter().find(|(number, _)| object(ray) == Some(*number))?;
-            Some(same.1.min(self.share(ray, is_lit)))
-        })
-        .fold(0.0, f64::max)
+        let of_kind = |kind: RayKind| self.children(camera).filter(move |ray| ray.task.kind == kind);
+        let mirrored = of_kind(RayKind::Reflected).filter(|ray| !self.is_body(ray));
+        let mirrored: Vec<(u32, f64)> =
+            mirrored.filter_map(|ray| Some((object(ray)?, self.share(ray, |_| true)))).collect();
+        let mut within: Vec<&TracedRay> = of_kind(RayKind::Refracted).collect();
+        let mut next = 0;
+        while let Some(ray) = within.get(next).copied() {
+            within.extend(self.children(ray));
+            next += 1;
+        }
+        let both = mirrored.iter().map(|(number, share)| {
+            let seen = within.iter().filter(|ray| object(ray) == Some(*number));
+            share.min(seen.map(|ray| self.share(ray, |_| true)).sum())
+        });
+        both.fold(0.0, f64::max)
     }
 
     /// All rays that go through bodies from a ray on, refracted at every boundary.

@@ -330,6 +330,8 @@ impl<'w> Tally<'w> {
 }
 
 impl Observer for Tally<'_> {
+    const DETAILS: bool = false;
+
     #[inline]
     fn ray(&mut self, task: &RayTask) {
         let before = match task.kind {

@@ -216,6 +216,8 @@ pub struct Blocker {
     pub point: Point3,
     /// The object's name.
     pub object: String,
+    /// Its number in the scene's list.
+    pub object_number: u32,
     /// The material's name.
     pub material: String,
     /// How far it is from where the shadow ray begins.

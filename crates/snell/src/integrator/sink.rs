@@ -160,6 +160,12 @@ impl<O: Observer> Sink<'_, O> {
         O::WATCHES
     }
 
+    /// True where somebody wants to know of surfaces and boundaries.
+    #[inline(always)]
+    pub fn is_detailed(&self) -> bool {
+        O::DETAILS
+    }
+
     /// Asks how much of a light arrives; the answer is added to the sample after the generation.
     #[inline]
     pub fn ask(&mut self, question: ShadowQuestion) {

@@ -206,7 +206,7 @@ impl Whitted {
             }
         }
 
-        if out.is_watched() {
+        if out.is_detailed() {
             for lane in lanes.lanes() {
                 out.observer().surface(rays.rows.notes[rays.at + lane].id, &bsdf.lane(lane));
             }
@@ -320,7 +320,7 @@ impl Whitted {
         let (refracts, direction) = refract_lanes(wo, boundary.normal, eta);
         let reflectance = boundary.reflectance(wo, eta_before, eta_beyond);
         let (reflect_share, transmit_share) = boundary.shares(reflectance, refracts);
-        if shading.out.is_watched() {
+        if shading.out.is_detailed() {
             let shares = [reflect_share, transmit_share, weight];
             boundary.tell(lanes, (&before, &beyond), (refracts, direction), reflectance, shares, band, shading);
         }

@@ -86,7 +86,7 @@ pub fn answer<L: Lanes, O: Observer>(
         let mut shares = [[0.0; WIDTH]; 3];
         transmitted.store(&mut shares, 0);
         for lane in active.lanes() {
-            if blocked.has(lane) {
+            if O::DETAILS && blocked.has(lane) {
                 context.tell_blocker(rows, at + lane, observer);
             }
             let transmittance = if blocked.has(lane) { Rgb::BLACK } else { Rgb::from(column(&shares, lane)) };

@@ -14,6 +14,8 @@ use crate::viewing::ViewingError;
 
 /// An object larger than what the rays span by this factor does not count for the frame: the ground is not to be seen as a whole.
 const LARGE: f64 = 1.6;
+/// Height over width of a picture of what is wide and low.
+const LEAST_ASPECT: f64 = 0.55;
 /// The room around what is to be seen.
 const MARGIN: f64 = 1.3;
 
@@ -45,7 +47,7 @@ pub fn camera(
     let looking = |camera: scene::Camera, aspect: f64| Looking { camera, aspect, size };
     let along = told.rays.first().and_then(|ray| ray.direction).unwrap_or(-own.axes()[2]);
     let flat = Vector3::new(along.x(), 0.0, along.z());
-    let forward = flat.try_normalize().unwrap_or_else(|| own.axes()[1]);
+    let forward = flat.try_normalize().unwrap_or(Vector3::X);
     let right_of = forward.cross(Vector3::Y).try_normalize().unwrap_or(Vector3::Z);
     let (back, up) = match &figure.view {
         View::Camera => return Ok(looking(scene.camera.clone(), pixels[1] / pixels[0])),
@@ -54,8 +56,12 @@ pub fn camera(
         View::Side => (right_of, Vector3::Y),
         View::Above => (Vector3::Y, Vector3::Y.cross(forward)),
         View::Front => (own.axes()[2], own.axes()[1]),
+        View::From(point) => {
+            let back = (*point - bounds.center()).try_normalize().unwrap_or(own.axes()[2]);
+            // From straight above or below, what is before the eye is to the right.
+            (back, if back.y().abs() < 0.999 { Vector3::Y } else { back.cross(forward) })
+        }
     };
-    let up = if figure.view == View::Above && up.length() < 0.5 { own.axes()[1] } else { up };
     let right = up.cross(back).normalize();
     let up = back.cross(right);
     // The extent of what is to be seen, across and up.
@@ -64,13 +70,14 @@ pub fn camera(
         let reach = (0..8).map(|corner| (bounds.corner(corner) - center).dot(axis).abs());
         2.0 * reach.fold(0.0, f64::max)
     };
-    let width = MARGIN * extent(right).max(extent(up) / ASPECT).max(1e-6);
+    let aspect = (extent(up) / extent(right).max(1e-9)).clamp(LEAST_ASPECT, ASPECT);
+    let width = MARGIN * extent(right).max(extent(up) / aspect).max(1e-6);
     // Before everything that the scene has, so that nothing is behind it.
     let all = finite_bounds(scene);
     let reach = if all.is_finite() { all.union(&bounds).diagonal().length() } else { size };
     let eye = center + back * (2.0 * (reach + width));
     let camera = scene::Camera { eye, gaze: -back, up, frame: Frame::OrthographicWidth(width) };
-    Ok(looking(camera, ASPECT))
+    Ok(looking(camera, aspect))
 }
 
 /// The direction towards the viewer across the plane of incidence at the first surface that bends or mirrors light, and what is up
@@ -85,7 +92,9 @@ fn across(told: &Explanation, chosen: &[Chosen], forward: Vector3, side: Vector3
         return None;
     }
     let across = across.normalize();
-    let back = if across.dot(side) < 0.0 { -across } else { across };
+    // From above rather than from below, where the ground would hide everything.
+    let is_turned = if across.y().abs() > 0.1 { across.y() < 0.0 } else { across.dot(side) < 0.0 };
+    let back = if is_turned { -across } else { across };
     // As upright as it can be; where the plane lies flat, what is before the eye is to the right.
     let upright = Vector3::Y - back * back.y();
     let up = if upright.length() > 0.3 { upright.normalize() } else { back.cross(forward).normalize() };
@@ -105,6 +114,14 @@ fn seen(scene: &CompiledScene, told: &Explanation, chosen: &[Chosen]) -> Bounds3
             points.push(surface.point);
             if !objects.contains(&surface.object_number) {
                 objects.push(surface.object_number);
+            }
+        }
+        // What stands in the way of a light belongs to it.
+        let asked = told.rays.iter().filter(|other| other.parent == Some(one.ray) && other.kind == Kind::Shadow);
+        for blocker in asked.flat_map(|asked| &asked.blockers) {
+            points.push(blocker.point);
+            if !objects.contains(&blocker.object_number) {
+                objects.push(blocker.object_number);
             }
         }
     }

@@ -7,7 +7,7 @@ mod panel;
 mod rays;
 
 use snell_math::{Point3, Rgb};
-use snell_scene::scene::{self, Drawing, PixelGrid};
+use snell_scene::scene::{self, Drawing, HiddenLines, PixelGrid};
 
 use super::Explanation;
 use crate::camera::Camera;
@@ -31,6 +31,8 @@ pub enum View {
     Front,
     /// As the camera sees it.
     Camera,
+    /// From a point of the world, towards what the rays meet, without perspective.
+    From(Point3),
     /// As another camera sees it.
     Given(Box<scene::Camera>),
 }
@@ -125,7 +127,8 @@ pub fn figure(
     let looking = frame::camera(scene, settings, told, &chosen, figure)?;
     let (aspect, description) = (looking.aspect, looking.camera);
     let pixels = [PIXELS, (PIXELS * aspect).round().max(1.0)].map(|pixels| pixels as u32);
-    let drawing = Drawing { width: figure.width, line_width: 0.25, frame: false, ..Drawing::default() };
+    let hidden = HiddenLines::Dashed;
+    let drawing = Drawing { width: figure.width, line_width: 0.25, hidden, ..Drawing::default() };
     let drawn = DrawingSettings {
         width: pixels[0],
         height: pixels[1],

@@ -188,11 +188,12 @@ impl List {
             self.y += if size < SIZE { LINE - 0.5 } else { LINE };
         };
         let mut current = String::new();
-        for word in markup.split(' ') {
-            let longer = if current.is_empty() { word.to_owned() } else { format!("{current} {word}") };
+        // A number stays with its percent sign.
+        for word in markup.replace(" %", "\u{1}").split(' ').map(|word| word.replace('\u{1}', " %")) {
+            let longer = if current.is_empty() { word.clone() } else { format!("{current} {word}") };
             if !current.is_empty() && measure(&longer, size).width > right - indent {
                 put(&current);
-                current = word.to_owned();
+                current = word;
             } else {
                 current = longer;
             }

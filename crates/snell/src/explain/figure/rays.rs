@@ -16,6 +16,8 @@ pub const NORMAL: [u8; 3] = [70, 70, 70];
 const NORMAL_REACH: f64 = 9.0;
 /// The radii of the arcs of incidence and of refraction, millimetres.
 const ARCS: [f64; 2] = [5.0, 6.2];
+/// In scenes of at most so many objects those that no ray meets are named too.
+const MOST_NAMES: u32 = 12;
 /// How far rays without end go, in sizes of what is seen.
 const ENDLESS: f64 = 4.0;
 /// How far shadow rays go that reach no point of the picture, in sizes of what is seen.
@@ -115,7 +117,7 @@ pub fn draw(scene: &CompiledScene, told: &Explanation, chosen: &[Chosen], sheet:
     for (light, tip, along) in shadow_ends {
         let at = |distance: f64| [tip[0] + along[0] * distance, tip[1] + along[1] * distance];
         let places: Vec<[f64; 2]> = [at(3.5), at(-4.0)].into_iter().chain(around(tip, &[4.0, 6.5])).collect();
-        labels.text(&plain(&format!("to {light}")), 2.8, color(Kind::Shadow), &places);
+        labels.text(&plain(&light), 2.8, color(Kind::Shadow), &places);
     }
     page.groups.extend([surfaces, shadows]);
     page.groups.extend(groups);
@@ -210,7 +212,8 @@ fn shadow(
     } else {
         items.push(Item::Path(arrow_head(b, along, 2.0, color)));
     }
-    let light = ray.light.clone().unwrap_or_default();
+    let light = ray.light.as_deref().unwrap_or_default();
+    let light = if is_blocked { format!("to {light}, blocked") } else { format!("to {light}") };
     if !ends.iter().any(|(name, at, _)| *name == light && (at[0] - b[0]).abs() + (at[1] - b[1]).abs() < 8.0) {
         ends.push((light, b, along));
     }
@@ -331,29 +334,45 @@ fn number(one: &Chosen, ray: &ExplainedRay, sheet: &Sheet, size: f64, labels: &m
     labels.badge(one.number, color(ray.kind), &places);
 }
 
-/// The names of the objects that rays meet, each once.
+/// The names of the objects that rays meet, each once, and of others that are seen as a whole.
 fn names(scene: &CompiledScene, told: &Explanation, chosen: &[Chosen], sheet: &Sheet, labels: &mut Labels) {
-    let mut done: Vec<u32> = Vec::new();
-    for one in chosen {
-        let Some(surface) = &told.rays[one.ray].surface else { continue };
-        if done.contains(&surface.object_number) {
-            continue;
+    let mut objects: Vec<(u32, Option<Point3>)> = Vec::new();
+    for surface in chosen.iter().filter_map(|one| told.rays[one.ray].surface.as_ref()) {
+        if !objects.iter().any(|(number, _)| *number == surface.object_number) {
+            objects.push((surface.object_number, Some(surface.point)));
         }
-        done.push(surface.object_number);
-        let mut places = Vec::new();
-        // In the middle of what is seen as a whole; else beside the point.
-        if let Some(bounds) = object_bounds(scene, surface.object_number) {
-            let corners = (0..8).filter_map(|corner| sheet.at(bounds.corner(corner)));
-            let is_whole = corners.clone().count() == 8 && corners.clone().all(|corner| sheet.place.contains(corner));
-            if is_whole && let Some(center) = sheet.at(bounds.center()) {
-                let low = corners.map(|corner| corner[1]).fold(f64::NEG_INFINITY, f64::max);
-                places.extend([[center[0], low + 2.5], [center[0], low - 4.0], center]);
+    }
+    let count = scene.object_names.len() as u32;
+    if count <= MOST_NAMES {
+        for number in 0..count {
+            if !objects.iter().any(|(other, _)| *other == number) {
+                objects.push((number, None));
             }
         }
-        if let Some(at) = sheet.at(surface.point) {
+    }
+    for (number, met) in objects {
+        let mut places = Vec::new();
+        // Within what is seen as a whole, or else above or below it; or beside the point.
+        if let Some(bounds) = object_bounds(scene, number) {
+            let corners: Vec<[f64; 2]> = (0..8).filter_map(|corner| sheet.at(bounds.corner(corner))).collect();
+            let is_whole = corners.len() == 8 && corners.iter().all(|corner| sheet.place.contains(*corner));
+            let center = sheet.at(bounds.center()).filter(|center| is_whole || sheet.place.contains(*center));
+            if let Some([x, y]) = center {
+                let low = corners.iter().map(|corner| corner[1]).fold(f64::NEG_INFINITY, f64::max);
+                let high = corners.iter().map(|corner| corner[1]).fold(f64::INFINITY, f64::min);
+                let height = low - high;
+                places.extend([-0.2, 0.2, 0.0, -0.3, 0.3].map(|share| [x, y + share * height]));
+                places.extend([[x, high - 2.5], [x, low + 2.5]]);
+            }
+            if met.is_none() && !is_whole && center.is_none() {
+                continue;
+            }
+        }
+        if let Some(at) = met.and_then(|met| sheet.at(met)) {
             places.extend(around(at, &[6.0, 9.0, 13.0, 18.0]));
         }
-        labels.text(&format!("*{}*", plain(&surface.object)), 3.0, [90; 3], &places);
+        let name = scene.object_names.get(number).unwrap_or_default();
+        labels.text(&format!("*{}*", plain(&name)), 3.0, [90; 3], &places);
     }
 }
 

@@ -1,6 +1,7 @@
 //! What is explained is what was rendered: the shares of a pixel add up to the pixel, bit for bit, and its numbers are those of
 //! closed forms.
 
+mod figures;
 mod numbers;
 mod pictures;
 
