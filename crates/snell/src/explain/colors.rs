@@ -14,6 +14,8 @@ const COLORS: [[u8; 3]; 7] =
     [[8, 8, 24], [44, 30, 110], [120, 28, 132], [190, 52, 96], [232, 100, 44], [246, 170, 50], [252, 246, 190]];
 /// The bar's strip: pixels for a picture that is 640 wide.
 const STRIP: f64 = 60.0;
+/// Steps of a picture's colours.
+const TABLE: u32 = 2048;
 /// The steps of the bar.
 const STEPS: u32 = 128;
 
@@ -47,8 +49,14 @@ pub fn range(values: &Image<f32>, property: &Property) -> [f64; 2] {
 pub fn false_colors(values: &Image<f32>, property: &Property) -> Result<DisplayImage, VectorError> {
     let [least, most] = range(values, property);
     let width = values.width();
-    let mut codes: Vec<[u8; 3]> =
-        values.pixels().iter().map(|value| color((f64::from(*value) - least) / (most - least))).collect();
+    // Finer than what 8 bits show.
+    let table: Vec<[u8; 3]> = (0..=TABLE).map(|step| color(f64::from(step) / f64::from(TABLE))).collect();
+    let step = |value: f32| {
+        let share = (f64::from(value) - least) / (most - least);
+        // NaN becomes 0.
+        ((share * f64::from(TABLE)).round().clamp(0.0, f64::from(TABLE))) as usize
+    };
+    let mut codes: Vec<[u8; 3]> = values.pixels().iter().map(|value| table[step(*value)]).collect();
     let bar = bar(width, property, [least, most])?;
     if let Samples::Eight(samples) = bar.samples() {
         codes.extend(samples.chunks_exact(3).map(|code| [code[0], code[1], code[2]]));

@@ -13,7 +13,9 @@ use crate::render::RenderSettings;
 use crate::viewing::ViewingError;
 
 /// An object larger than what the rays span by this factor does not count for the frame: the ground is not to be seen as a whole.
-const LARGE: f64 = 1.6;
+const LARGE: f64 = 2.5;
+/// The same for what stands in the way of a light, which may be near to the shadow.
+const LARGE_BLOCKER: f64 = 6.0;
 /// Height over width of a picture of what is wide and low.
 const LEAST_ASPECT: f64 = 0.55;
 /// The room around what is to be seen.
@@ -104,7 +106,8 @@ fn across(told: &Explanation, chosen: &[Chosen], forward: Vector3, side: Vector3
 /// The box around what the rays meet, the eye left out, which is far away most often.
 fn seen(scene: &CompiledScene, told: &Explanation, chosen: &[Chosen]) -> Bounds3 {
     let mut points: Vec<Point3> = Vec::new();
-    let mut objects: Vec<u32> = Vec::new();
+    // Each with how large it may be.
+    let mut objects: Vec<(u32, f64)> = Vec::new();
     for one in chosen {
         let ray = &told.rays[one.ray];
         if ray.kind != Kind::Camera {
@@ -112,26 +115,27 @@ fn seen(scene: &CompiledScene, told: &Explanation, chosen: &[Chosen]) -> Bounds3
         }
         if let Some(surface) = &ray.surface {
             points.push(surface.point);
-            if !objects.contains(&surface.object_number) {
-                objects.push(surface.object_number);
+            if !objects.iter().any(|(number, _)| *number == surface.object_number) {
+                objects.push((surface.object_number, LARGE));
             }
         }
         // What stands in the way of a light belongs to it.
         let asked = told.rays.iter().filter(|other| other.parent == Some(one.ray) && other.kind == Kind::Shadow);
         for blocker in asked.flat_map(|asked| &asked.blockers) {
             points.push(blocker.point);
-            if !objects.contains(&blocker.object_number) {
-                objects.push(blocker.object_number);
+            if !objects.iter().any(|(number, _)| *number == blocker.object_number) {
+                objects.push((blocker.object_number, LARGE_BLOCKER));
             }
         }
     }
     let mut bounds = points.iter().fold(Bounds3::EMPTY, |all, p| all.including(*p));
-    let mut around: Vec<Bounds3> = objects.iter().filter_map(|object| object_bounds(scene, *object)).collect();
-    around.sort_by(|a, b| a.diagonal().length().total_cmp(&b.diagonal().length()));
-    for object in around {
+    let bounds_of = |(object, large): &(u32, f64)| Some((object_bounds(scene, *object)?, *large));
+    let mut around: Vec<(Bounds3, f64)> = objects.iter().filter_map(bounds_of).collect();
+    around.sort_by(|(a, _), (b, _)| a.diagonal().length().total_cmp(&b.diagonal().length()));
+    for (object, large) in around {
         let span = if bounds.is_empty() { 0.0 } else { bounds.diagonal().length() };
         let is_point = span < 1e-3 * object.diagonal().length();
-        if is_point || object.diagonal().length() <= LARGE * span {
+        if is_point || object.diagonal().length() <= large * span {
             // What was met at one place of a large thing is seen with its neighbourhood alone.
             let part = if is_point && points.len() == 1 { near(&object, points[0]) } else { object };
             bounds = bounds.union(&part);

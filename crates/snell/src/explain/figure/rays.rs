@@ -356,16 +356,15 @@ fn names(scene: &CompiledScene, told: &Explanation, chosen: &[Chosen], sheet: &S
         if let Some(bounds) = object_bounds(scene, number) {
             let corners: Vec<[f64; 2]> = (0..8).filter_map(|corner| sheet.at(bounds.corner(corner))).collect();
             let is_whole = corners.len() == 8 && corners.iter().all(|corner| sheet.place.contains(*corner));
-            let center = sheet.at(bounds.center()).filter(|center| is_whole || sheet.place.contains(*center));
+            // What is not seen as a whole is named where it is met, or else where its middle is seen.
+            let is_named_within = is_whole || met.is_none();
+            let center = sheet.at(bounds.center()).filter(|at| is_named_within && sheet.place.contains(*at));
             if let Some([x, y]) = center {
                 let low = corners.iter().map(|corner| corner[1]).fold(f64::NEG_INFINITY, f64::max);
                 let high = corners.iter().map(|corner| corner[1]).fold(f64::INFINITY, f64::min);
                 let height = low - high;
                 places.extend([-0.2, 0.2, 0.0, -0.3, 0.3].map(|share| [x, y + share * height]));
                 places.extend([[x, high - 2.5], [x, low + 2.5]]);
-            }
-            if met.is_none() && !is_whole && center.is_none() {
-                continue;
             }
         }
         if let Some(at) = met.and_then(|met| sheet.at(met)) {

@@ -26,7 +26,8 @@ fn rendered_scenes() -> BTreeSet<String> {
             let path = entry.ok()?.path();
             let text = std::fs::read_to_string(&path).ok()?;
             let is_rendered = text.lines().any(|line| line.trim_end() == "[[light]]");
-            (path.extension()? == "toml" && is_rendered).then(|| path.file_stem().unwrap().to_string_lossy().into())
+            let stem = path.file_stem()?.to_string_lossy().into_owned();
+            (path.extension()? == "toml" && is_rendered).then_some(stem)
         })
         .collect();
     assert!(names.len() > 10, "{names:?}");
