@@ -81,3 +81,25 @@ impl Statistics {
         self.cut_weight = self.cut_weight.saturating_add(other.cut_weight);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_sample_that_is_no_number_is_kept_in_any_order() {
+        let place = |y, x, sample| SamplePlace { y, x, sample };
+        let of = |places: &[SamplePlace]| {
+            let mut statistics = Statistics::default();
+            places.iter().for_each(|place| statistics.add_nonfinite(*place));
+            statistics
+        };
+        let (one, other) = (of(&[place(3, 1, 0), place(2, 9, 5), place(2, 9, 4)]), of(&[place(2, 10, 0)]));
+        for (mut sum, part) in [(one, other), (other, one), (one, Statistics::default()), (Statistics::default(), one)]
+        {
+            sum.merge(&part);
+            assert_eq!(sum.first_nonfinite, Some(place(2, 9, 4)));
+        }
+        assert_eq!(one.nonfinite_samples, 3);
+    }
+}
