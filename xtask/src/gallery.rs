@@ -1,5 +1,7 @@
 //! `cargo xtask gallery`: renders and draws the built-in scenes into `docs/gallery/` and writes the page that shows them.
 //!
+//! The figures of the page on explanations are made with them, into `docs/explain/`.
+//!
 //! A caption is the comment that opens a scene file: its first line is the title, the rest says what the picture shows. A scene
 //! without a light is a figure, which is drawn and not rendered.
 
@@ -15,6 +17,15 @@ const RENDER_OPTIONS: &[&str] = &["--width", "960"];
 
 /// Figures that `snell view` draws: both volumes side by side.
 const VIEWS: &[&str] = &["canonical-volume"];
+
+/// What the page on explanations shows, below `docs/explain/`: the words after `snell`, and the file. Of the seven rays each has one.
+const EXPLANATIONS: &[(&[&str], &str)] = &[
+    (&["explain", "seven-rays"], "seven-rays.png"),
+    (&["render", "seven-rays", "--width", "480", "--map", "depth"], "depth.png"),
+    (&["render", "seven-rays", "--width", "480", "--map", "share:refracted"], "refracted.png"),
+    (&["render", "seven-rays", "--width", "480", "--map", "share:object=board"], "board.png"),
+    (&["render", "total-internal-reflection", "--width", "480", "--map", "tir"], "tir.png"),
+];
 
 /// Pictures above this size do not belong into a repository; bytes.
 const LARGEST_PICTURE: u64 = 1 << 20;
@@ -64,6 +75,13 @@ pub fn run(arguments: Arguments) -> Outcome {
                     picture.display()
                 ));
             }
+        }
+    }
+    if wanted.is_empty() {
+        let folder = root.join("docs").join("explain");
+        fs::create_dir_all(&folder).map_err(|error| format!("cannot make {}: {error}", folder.display()))?;
+        for (words, file) in EXPLANATIONS {
+            process::run(process::program(&snell.to_string_lossy()).args(*words).arg("-o").arg(folder.join(file)))?;
         }
     }
     remove_pictures_of_no_scene(&folder, &entries)?;

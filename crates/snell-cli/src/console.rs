@@ -18,6 +18,14 @@ pub fn write_stdout(bytes: &[u8]) -> Result<(), Failure> {
     }
 }
 
+/// Writes text with colours to standard output, which shows them where it can and where they are wanted.
+pub fn write_styled(text: &str) -> Result<(), Failure> {
+    let mut bytes = anstream::AutoStream::new(Vec::new(), anstream::AutoStream::choice(&io::stdout()));
+    // Writing into memory does not fail.
+    let _ = bytes.write_all(text.as_bytes());
+    write_stdout(&bytes.into_inner())
+}
+
 /// Writes a line to standard error. There is nobody left to tell where that fails.
 pub fn say(line: impl Display) {
     let _ = writeln!(io::stderr().lock(), "{line}");

@@ -23,9 +23,12 @@ use crate::statistics::{Stopwatch, seconds_text};
 
 /// The format of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Format {
+pub enum Format {
+    /// Scalable Vector Graphics.
     Svg,
+    /// Portable Document Format.
     Pdf,
+    /// Pixels.
     Png,
 }
 
@@ -167,7 +170,7 @@ fn backdrop(path: &Path, scene: &Scene, assets: &FileAssets) -> Result<Vec<u8>, 
 }
 
 /// The bytes of a page; a PNG has `width` pixels from left to right.
-fn encode(page: &Page, format: Format, width: u32) -> Result<Vec<u8>, Failure> {
+pub fn encode(page: &Page, format: Format, width: u32) -> Result<Vec<u8>, Failure> {
     let failed = |error: &dyn std::fmt::Display| Failure::input(Diagnostic::error(error.to_string()));
     match format {
         Format::Svg => encode_svg(page).map(String::into_bytes).map_err(|error| failed(&error)),

@@ -8,10 +8,12 @@ mod check;
 mod console;
 mod diagnostics;
 mod draw;
+mod explain;
 mod failure;
 mod glass;
 mod interrupt;
 mod load;
+mod map;
 mod output;
 mod preview;
 mod progress;
@@ -49,6 +51,7 @@ fn run(command: Command, watch: Stopwatch) -> Result<u8, Failure> {
     match command {
         Command::Render(arguments) => return render::run(&arguments, watch),
         Command::Draw(arguments) => return draw::run(&arguments, watch),
+        Command::Explain(arguments) => return explain::run(&arguments),
         Command::View(arguments) => return view::run(&arguments),
         Command::Glass(arguments) => return glass::run(&arguments),
         Command::Check(arguments) => return check::run(&arguments),

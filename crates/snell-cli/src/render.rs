@@ -6,8 +6,9 @@ use snell::compile::CompiledScene;
 use snell::render::{PathSettings, RenderSettings, Rendering, render, render_paths};
 use snell::scene::reader::nff;
 use snell::scene::{Diagnostic, Diagnostics, Scene};
+use snell::statistics::SamplePlace;
 
-use crate::arguments::{IntegratorName, Preset, RenderArguments};
+use crate::arguments::{IntegratorName, PathArguments, PictureArguments, Preset, RenderArguments, word};
 use crate::assets::FileAssets;
 use crate::builtin;
 use crate::console::{quoted, say, write_stdout};
@@ -15,6 +16,7 @@ use crate::diagnostics;
 use crate::failure::{FINE, Failure};
 use crate::interrupt::Interrupt;
 use crate::load::Place;
+use crate::map;
 use crate::output::Target;
 use crate::preview::{self, Kind};
 use crate::progress::RenderProgress;
@@ -26,7 +28,12 @@ const MOST_SAMPLES: u32 = 1 << 24;
 
 /// Renders as the command line says, and returns the exit code.
 pub fn run(arguments: &RenderArguments, mut watch: Stopwatch) -> Result<u8, Failure> {
+    if arguments.map.as_deref() == Some("list") {
+        map::list()?;
+        return Ok(FINE);
+    }
     // All that can be refused is refused before the work.
+    let property = arguments.map.as_deref().map(map::property).transpose()?;
     let place = Place::find(arguments.scene.as_deref().unwrap_or(builtin::DEFAULT))?;
     let target = Target::new(arguments, &place.stem())?;
     let preview = if arguments.preview { Some(Kind::of_stdout()?) } else { None };
@@ -34,7 +41,7 @@ pub fn run(arguments: &RenderArguments, mut watch: Stopwatch) -> Result<u8, Fail
     start_threads(arguments.threads)?;
 
     let assets = FileAssets::default();
-    let (scene, mut told) = read(arguments, &place, &assets)?;
+    let (scene, mut told) = read(&arguments.picture, &place, &assets)?;
     target.spares(&assets)?;
     let load = watch.lap();
 
@@ -47,7 +54,15 @@ pub fn run(arguments: &RenderArguments, mut watch: Stopwatch) -> Result<u8, Fail
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::input(Diagnostic::error(format!("signals cannot be listened to: {error}"))))?;
     let paths = path_settings(arguments)?;
-    let progress = RenderProgress::start(interrupt.clone(), !arguments.quiet, arguments.time);
+    let progress = RenderProgress::start(interrupt.clone(), !arguments.quiet, arguments.paths.time);
+    if let Some(property) = &property {
+        map::render(&compiled, &settings, property, &target, &progress)?;
+        drop(progress);
+        if let (Some(name), false) = (target.name(), arguments.quiet) {
+            say(format_args!("wrote {name} ({}, {})", property.title(), seconds_text(watch.total())));
+        }
+        return Ok(interrupt.code().unwrap_or(FINE));
+    }
     let rendered = match &paths {
         Some(paths) => render_paths(&compiled, &settings, paths, &progress),
         None => render(&compiled, &settings, &progress),
@@ -63,7 +78,10 @@ pub fn run(arguments: &RenderArguments, mut watch: Stopwatch) -> Result<u8, Fail
     }
     let write = watch.lap();
 
-    let counted = Diagnostics { list: advice(&rendering.statistics, &settings), ..Diagnostics::default() };
+    let counted = Diagnostics {
+        list: advice(&rendering.statistics, &settings, &replay(arguments, &place, &rendering)),
+        ..Diagnostics::default()
+    };
     diagnostics::print(&counted);
     let times = Times { load, build, render, write, total: watch.total() };
     if !arguments.quiet {
@@ -87,6 +105,13 @@ pub fn run(arguments: &RenderArguments, mut watch: Stopwatch) -> Result<u8, Fail
     Ok(interrupt.code().unwrap_or(FINE))
 }
 
+/// The command that explains the first sample that is no number.
+fn replay(arguments: &RenderArguments, place: &Place, rendering: &Rendering) -> String {
+    let Some(SamplePlace { x, y, sample }) = rendering.statistics.first_nonfinite else { return String::new() };
+    let words = arguments.picture.words();
+    format!("snell explain {} --pixel {x},{y} --sample {sample}{words}", word(place.name()))
+}
+
 /// One pool for all that runs in parallel, where a number of threads is asked for; else it is made when first needed.
 fn start_threads(threads: Option<usize>) -> Result<(), Failure> {
     let Some(threads) = threads else { return Ok(()) };
@@ -97,7 +122,7 @@ fn start_threads(threads: Option<usize>) -> Result<(), Failure> {
 }
 
 /// The scene with the command line's word over its settings, and its warnings.
-fn read(arguments: &RenderArguments, place: &Place, assets: &FileAssets) -> Result<(Scene, Diagnostics), Failure> {
+pub fn read(arguments: &PictureArguments, place: &Place, assets: &FileAssets) -> Result<(Scene, Diagnostics), Failure> {
     let (scene, told) = place.read(&arguments.set, assets)?;
     let Some(mut scene) = scene else { return Err(Failure::scene(told)) };
     if arguments.preset == Some(Preset::Spd) {
@@ -128,14 +153,14 @@ pub fn compile(scene: &Scene, told: &mut Diagnostics) -> Result<CompiledScene, F
 }
 
 fn render_settings(arguments: &RenderArguments, scene: &Scene) -> RenderSettings {
-    let defaults = RenderSettings::from(&scene.settings);
+    let defaults = picture_settings(&arguments.picture, scene);
     RenderSettings { tile_size: arguments.tile.unwrap_or(defaults.tile_size), layers: arguments.layers, ..defaults }
 }
 
 /// How paths are traced; `None` where they are not.
 fn path_settings(arguments: &RenderArguments) -> Result<Option<PathSettings>, Failure> {
-    let RenderArguments { samples, noise, time, seed, no_photons, .. } = arguments;
-    if arguments.integrator != Some(IntegratorName::Path) {
+    let PathArguments { integrator, samples, noise, time, seed, no_photons } = &arguments.paths;
+    if *integrator != Some(IntegratorName::Path) {
         let flags = [
             ("--samples", samples.is_some()),
             ("--noise", noise.is_some()),
@@ -157,9 +182,14 @@ fn path_settings(arguments: &RenderArguments) -> Result<Option<PathSettings>, Fa
         samples: samples.unwrap_or(without_end),
         noise: *noise,
         photons: !no_photons,
-        depth: arguments.depth.and_then(|depth| u16::try_from(depth).ok()).unwrap_or(defaults.depth),
+        depth: arguments.picture.depth.and_then(|depth| u16::try_from(depth).ok()).unwrap_or(defaults.depth),
         seed: seed.unwrap_or(defaults.seed),
     }))
+}
+
+/// How a picture is rendered, from a scene that [`read`] gave.
+pub fn picture_settings(arguments: &PictureArguments, scene: &Scene) -> RenderSettings {
+    RenderSettings { wavelength_nm: arguments.wavelength, ..RenderSettings::from(&scene.settings) }
 }
 
 /// `wrote x.png (1024x768, 0.21 s)`.

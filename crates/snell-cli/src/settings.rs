@@ -3,14 +3,14 @@
 use snell::scene::Diagnostic;
 use snell::scene::scene::Settings;
 
-use crate::arguments::RenderArguments;
+use crate::arguments::PictureArguments;
 use crate::failure::Failure;
 
 /// The most pixels of a picture, 16384 × 16384: rendering so many takes about 25 gigabytes.
 const MOST_PIXELS: u64 = 1 << 28;
 
 /// Puts what the command line says into a scene's settings.
-pub fn apply(arguments: &RenderArguments, settings: &mut Settings) -> Result<(), Failure> {
+pub fn apply(arguments: &PictureArguments, settings: &mut Settings) -> Result<(), Failure> {
     replace(&mut settings.depth, arguments.depth);
     replace(&mut settings.min_weight, arguments.min_weight);
     replace(&mut settings.antialiasing, arguments.aa);

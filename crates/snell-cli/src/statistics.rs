@@ -116,8 +116,8 @@ fn seconds(duration: Duration) -> f64 {
     duration.as_micros() as f64 / 1e6
 }
 
-/// What a user should know about the counts, and what to do.
-pub fn advice(statistics: &Statistics, settings: &RenderSettings) -> Vec<Diagnostic> {
+/// What a user should know about the counts, and what to do; `replay` is the command that explains the first sample that is no number.
+pub fn advice(statistics: &Statistics, settings: &RenderSettings, replay: &str) -> Vec<Diagnostic> {
     let mut list = Vec::new();
     let cut = statistics.cut_weight();
     if cut > TOLERATED_CUT {
@@ -138,8 +138,11 @@ pub fn advice(statistics: &Statistics, settings: &RenderSettings) -> Vec<Diagnos
             "{} of the picture's samples are infinite or not a number, and count as black",
             statistics.nonfinite_samples
         );
-        let help = "look for extreme values in the scene, such as an intensity of 1e38; a smaller --depth tells whether many \
-                    reflections multiply them. If there are none, this is a bug worth a report";
+        let help = format!(
+            "look for extreme values in the scene, such as an intensity of 1e38; a smaller --depth tells whether many \
+             reflections multiply them. If there are none, this is a bug worth a report. `{replay}` shows how the first of \
+             them came about"
+        );
         list.push(Diagnostic::warning(message).help(help));
     }
     list
@@ -199,13 +202,13 @@ mod tests {
         let mut statistics = Statistics::default();
         (statistics.camera_rays, statistics.max_depth) = (100, 5);
         statistics.add_cut_weight(Rgb::WHITE);
-        assert!(advice(&statistics, &settings).is_empty());
+        assert!(advice(&statistics, &settings, "snell explain a").is_empty());
         statistics.add_cut_weight(Rgb::WHITE);
-        let list = advice(&statistics, &settings);
+        let list = advice(&statistics, &settings, "snell explain a");
         assert!(list[0].message.starts_with("up to 2.0 %"), "{list:?}");
         assert!(list[0].help.as_ref().is_some_and(|help| help.contains("--depth 10")), "{list:?}");
         statistics.max_depth = 4;
-        let list = advice(&statistics, &settings);
+        let list = advice(&statistics, &settings, "snell explain a");
         assert!(list[0].help.as_ref().is_some_and(|help| help.contains("--min-weight")), "{list:?}");
     }
 
@@ -214,7 +217,8 @@ mod tests {
         let settings = RenderSettings::from(&Settings::default());
         let mut statistics = Statistics::default();
         (statistics.camera_rays, statistics.nonfinite_samples) = (1, 1);
-        assert_eq!(advice(&statistics, &settings).len(), 1);
+        let list = advice(&statistics, &settings, "snell explain a");
+        assert!(list[0].help.as_ref().is_some_and(|help| help.contains("`snell explain a`")), "{list:?}");
     }
 
     #[cfg(unix)]

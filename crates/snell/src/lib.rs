@@ -5,6 +5,7 @@ pub mod camera;
 pub mod compile;
 pub mod csg;
 pub mod drawing;
+pub mod explain;
 pub mod film;
 pub mod geometry;
 pub mod integrator;

@@ -153,6 +153,20 @@ impl<L: Lanes> LaneBsdf<L> {
         }
     }
 
+    /// What it is in one lane.
+    pub fn lane(&self, lane: usize) -> Bsdf {
+        let Self { emission, ambient, diffuse, specular, mirror, reflect, transmit, .. } = *self;
+        let [emission, ambient, diffuse, specular, mirror, reflect, transmit] =
+            [emission, ambient, diffuse, specular, mirror, reflect, transmit].map(|color| {
+                let mut rows = [[0.0; WIDTH]; 3];
+                color.store(&mut rows, 0);
+                Rgb::from(rows.map(|row| row[lane]))
+            });
+        let interface = self.fresnel.map(|fresnel| Interface { fresnel, reflect, transmit });
+        let Self { shininess, one_sided, .. } = *self;
+        Bsdf { emission, ambient, diffuse, specular, shininess, mirror, interface, one_sided }
+    }
+
     /// The lanes where lights matter.
     #[inline(always)]
     pub fn is_lit(&self) -> Bits {

@@ -41,7 +41,7 @@ const ROOMS: &[Room] = &[
     // Metals are known by their indices.
     Room { name: "material", may_use: &["texture", "interaction", "optics"] },
     Room { name: "task", may_use: &["interaction"] },
-    Room { name: "observe", may_use: &["interaction", "task"] },
+    Room { name: "observe", may_use: &["interaction", "material", "task"] },
     Room { name: "geometry", may_use: &["accel", "shape", "csg", "texture", "interaction", "task"] },
     Room {
         name: "compile",
@@ -97,6 +97,25 @@ const ROOMS: &[Room] = &[
             "compile",
             "integrator",
             "trace",
+        ],
+    },
+    // What the watched code told, put into words' order and drawn.
+    Room {
+        name: "explain",
+        may_use: &[
+            "viewing",
+            "vector",
+            "optics",
+            "camera",
+            "film",
+            "interaction",
+            "task",
+            "observe",
+            "geometry",
+            "compile",
+            "drawing",
+            "trace",
+            "render",
         ],
     },
 ];

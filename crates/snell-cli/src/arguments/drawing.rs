@@ -200,7 +200,7 @@ fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
-fn coordinates<const N: usize>(text: &str) -> Result<[f64; N], String> {
+pub fn coordinates<const N: usize>(text: &str) -> Result<[f64; N], String> {
     let numbers: Result<Vec<f64>, _> = text.split(',').map(|word| word.trim().parse::<f64>()).collect();
     numbers
         .ok()

@@ -1,18 +1,23 @@
 //! The command line, as clap reads it and `--help`, the manual and the completions describe it.
 
 mod drawing;
+mod explain;
 mod glass;
+mod paths;
+mod picture;
 
 use std::path::PathBuf;
-use std::time::Duration;
 
 use clap::builder::RangedU64ValueParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
-use snell::scene::scene::{Antialiasing, Shadows, Tone};
+use snell::scene::scene::{Shadows, Tone};
 
 pub use drawing::{DrawArguments, HiddenName, StrokeName, ViewArguments, ViewFormat};
+pub use explain::{ExplainArguments, ExplainFormat};
 pub use glass::{GlassArguments, GlassFormat, MediumName};
+pub use paths::{IntegratorName, PathArguments};
+pub use picture::{PictureArguments, word};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -21,6 +26,7 @@ Examples:
   snell render my.toml -o my.png           a scene of yours
   snell render bunny.ply                   a mesh, framed and lit by itself
   snell draw lens                          the same scene as lines: lens.svg
+  snell explain lens --pixel 300,200       the rays that made a pixel, and the share of each
   snell view lens --point 0,1,0            its matrices, and a point on its way to a pixel
   snell scenes lens --extract .            a built-in scene to begin with
   snell glass N-BK7                        a glass: its indices, formula, transmittance
@@ -33,6 +39,7 @@ Examples:
   snell render my.toml --set camera.fov=30 --set material.glass.dielectric.ior=diamond
   snell render my.toml --aa 64 --bits 16 -o my.png
   snell render my.toml --layers -o my.exr  scene-linear colours, depth, normals, objects
+  snell render lens --map depth -o map.png how deep the tree of rays of each pixel is, in false colours
   snell render my.toml --preview           in the terminal only
   snell render my.toml -o - | display      to another program
   snell render balls.nff --preset spd      by the rules of the Standard Procedural Databases
@@ -61,6 +68,8 @@ pub enum Command {
     Render(Box<RenderArguments>),
     /// Draw a scene as lines: SVG, PDF or PNG
     Draw(Box<DrawArguments>),
+    /// Tell why a pixel looks as it does: the rays that made it, as text, JSON or a drawing
+    Explain(Box<ExplainArguments>),
     /// Print a scene's viewing matrices, and follow points through them
     View(Box<ViewArguments>),
     /// List the built-in scenes, print one, or copy it to edit it
@@ -98,32 +107,13 @@ pub struct RenderArguments {
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 
-    /// Change a value of the scene, such as camera.fov=30; as often as needed
-    #[arg(long, value_name = "KEY=VALUE")]
-    pub set: Vec<String>,
+    /// What decides how the picture is rendered.
+    #[command(flatten)]
+    pub picture: PictureArguments,
 
-    /// Settings of a standard: those of the Standard Procedural Databases
-    #[arg(long, value_name = "spd", hide_possible_values = true)]
-    pub preset: Option<Preset>,
-
-    /// Pixels from left to right; alone, the height follows
-    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..=65536))]
-    #[arg(help_heading = "Picture")]
-    pub width: Option<u32>,
-
-    /// Pixels from top to bottom; alone, the width follows
-    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..=65536))]
-    #[arg(help_heading = "Picture")]
-    pub height: Option<u32>,
-
-    /// The curve from scene-linear to display colours
-    #[arg(long, value_name = "none|reinhard|filmic", hide_possible_values = true, help_heading = "Picture")]
-    pub tone: Option<ToneName>,
-
-    /// Brightens by so many stops: 1 doubles the light, -1 halves it
-    #[arg(long, value_name = "STOPS", value_parser = exposure, allow_negative_numbers = true)]
-    #[arg(help_heading = "Picture")]
-    pub exposure: Option<f32>,
+    /// Instead of colours, one property of every pixel in false colours: `--map list` tells which there are
+    #[arg(long, value_name = "WHAT", conflicts_with_all = ["layers", "bits", "preview", "json"], help_heading = "Picture")]
+    pub map: Option<String>,
 
     /// Bits of each colour in a PNG
     #[arg(long, value_name = "8|16", value_parser = bits, help_heading = "Picture")]
@@ -133,52 +123,8 @@ pub struct RenderArguments {
     #[arg(long, help_heading = "Picture")]
     pub layers: bool,
 
-    /// How light is followed: `whitted` as the lecture has it; `path` as it is, with light that comes through glass
-    #[arg(long, value_name = "whitted|path", hide_possible_values = true, help_heading = "Rendering")]
-    pub integrator: Option<IntegratorName>,
-
-    /// Depth of the deepest ray; a camera ray has 1
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
-    #[arg(help_heading = "Rendering")]
-    pub depth: Option<u32>,
-
-    /// Antialiasing; N is rays in every pixel
-    #[arg(long, value_name = "none|adaptive|N", value_parser = antialiasing, help_heading = "Rendering")]
-    pub aa: Option<Antialiasing>,
-
-    /// What blocks light; `filtered`: glass lets some through
-    #[arg(long, value_name = "filtered|opaque|none", hide_possible_values = true, help_heading = "Rendering")]
-    pub shadows: Option<ShadowsName>,
-
-    /// Least share of its pixel for a ray to be followed
-    #[arg(long, value_name = "SHARE", value_parser = share, help_heading = "Rendering")]
-    pub min_weight: Option<f32>,
-
-    /// Bands of wavelengths that dispersive glass splits
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
-    #[arg(help_heading = "Rendering")]
-    pub bands: Option<u32>,
-
-    /// Most samples of a pixel by `path` [default: 64; as many as it takes with --noise or --time]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
-    #[arg(help_heading = "Paths")]
-    pub samples: Option<u32>,
-
-    /// Finish pixels whose error is below this share of their brightness
-    #[arg(long, value_name = "SHARE", value_parser = noise, help_heading = "Paths")]
-    pub noise: Option<f64>,
-
-    /// Begin no further sample after this time, such as 30s or 5min
-    #[arg(long, value_name = "TIME", value_parser = time, help_heading = "Paths")]
-    pub time: Option<Duration>,
-
-    /// Leave light that comes through glass to chance: lights send out nothing
-    #[arg(long, help_heading = "Paths")]
-    pub no_photons: bool,
-
-    /// What random numbers depend on
-    #[arg(long, value_name = "N", help_heading = "Paths")]
-    pub seed: Option<u32>,
+    #[command(flatten)]
+    pub paths: PathArguments,
 
     /// Threads [default: one for each core]
     #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
@@ -248,13 +194,6 @@ impl From<ToneName> for Tone {
     }
 }
 
-/// Names of `--integrator`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum IntegratorName {
-    Whitted,
-    Path,
-}
-
 /// Names of `--shadows`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ShadowsName {
@@ -290,50 +229,6 @@ fn bits(text: &str) -> Result<Bits, String> {
     }
 }
 
-fn antialiasing(text: &str) -> Result<Antialiasing, String> {
-    match text {
-        "none" => Ok(Antialiasing::None),
-        "adaptive" => Ok(Antialiasing::Adaptive),
-        _ => match text.parse() {
-            Ok(rays @ 1..=65536) => Ok(Antialiasing::Samples(rays)),
-            _ => Err("write `none`, `adaptive`, or the number of rays for every pixel, 1 to 65536".to_owned()),
-        },
-    }
-}
-
-fn exposure(text: &str) -> Result<f32, String> {
-    number_in(text, -32.0, 32.0)
-}
-
-fn share(text: &str) -> Result<f32, String> {
-    number_in(text, 0.0, 1.0)
-}
-
-fn noise(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(value) if value > 0.0 && value <= 1.0 => Ok(value),
-        _ => Err("a number above 0 and up to 1 is needed, such as 0.01".to_owned()),
-    }
-}
-
-/// `30s`, `5min`, `1.5h`, `500ms`; a number alone is in seconds.
-fn time(text: &str) -> Result<Duration, String> {
-    let unit_at = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
-    let (number, unit) = text.split_at(unit_at);
-    let factor = match unit.trim() {
-        "ms" => Some(1e-3),
-        "" | "s" => Some(1.0),
-        "m" | "min" => Some(60.0),
-        "h" => Some(3600.0),
-        _ => None,
-    };
-    let seconds = number.trim().parse::<f64>().ok().zip(factor).map(|(number, factor)| number * factor);
-    seconds
-        .filter(|seconds| (0.0..=1e8).contains(seconds))
-        .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
-        .ok_or_else(|| "a time is needed, such as 30s, 5min or 2h".to_owned())
-}
-
 fn number_in(text: &str, least: f32, most: f32) -> Result<f32, String> {
     match text.parse() {
         Ok(value) if (least..=most).contains(&value) => Ok(value),
@@ -344,6 +239,7 @@ fn number_in(text: &str, least: f32, most: f32) -> Result<f32, String> {
 #[cfg(test)]
 mod tests {
     use clap::CommandFactory;
+    use snell::scene::scene::Antialiasing;
 
     use super::*;
 
@@ -362,12 +258,12 @@ mod tests {
     #[test]
     fn values_mean_what_they_say() {
         let arguments = render("a.toml --aa 16 --exposure -1.5 --bits 16 --min-weight 0 --shadows none").unwrap();
-        assert_eq!(arguments.aa, Some(Antialiasing::Samples(16)));
-        assert_eq!(arguments.exposure, Some(-1.5));
+        assert_eq!(arguments.picture.aa, Some(Antialiasing::Samples(16)));
+        assert_eq!(arguments.picture.exposure, Some(-1.5));
         assert_eq!(arguments.bits, Some(Bits::Sixteen));
-        assert_eq!(arguments.min_weight, Some(0.0));
-        assert_eq!(arguments.shadows.map(Shadows::from), Some(Shadows::None));
-        assert_eq!(render("--aa none").unwrap().aa, Some(Antialiasing::None));
+        assert_eq!(arguments.picture.min_weight, Some(0.0));
+        assert_eq!(arguments.picture.shadows.map(Shadows::from), Some(Shadows::None));
+        assert_eq!(render("--aa none").unwrap().picture.aa, Some(Antialiasing::None));
     }
 
     #[test]
@@ -387,6 +283,7 @@ mod tests {
             "--tile 0",
             "--json --preview",
             "--shadows soft",
+            "--wavelength 5",
         ] {
             assert!(render(line).is_err(), "{line}");
         }

@@ -3,11 +3,13 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod draw;
+mod explain;
 mod glass;
 mod mistakes;
 mod output;
 mod render;
 mod scenes;
+mod schema;
 #[cfg(unix)]
 mod signals;
 mod streams;

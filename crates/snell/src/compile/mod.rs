@@ -38,6 +38,10 @@ pub struct CompiledScene {
     pub camera: scene::Camera,
     /// The names of the objects, by their number; those without one are named after what they are.
     pub object_names: ObjectNames,
+    /// The names of the materials, by their number: "material 3" for the third where it has none.
+    pub material_names: Vec<String>,
+    /// The names of the lights, by their number.
+    pub light_names: Vec<String>,
     /// What is odd about the scene but renders all the same.
     pub warnings: Vec<Diagnostic>,
     /// What a ray sees that hits nothing.
@@ -72,6 +76,18 @@ pub struct SceneSize {
     pub primitives: u64,
 }
 
+/// Names as they are given, or else after the kind of thing and its number from 1.
+fn names<'a>(given: impl Iterator<Item = Option<&'a str>>, kind: &str) -> Vec<String> {
+    given.zip(1..).map(|(name, number)| name.map_or_else(|| format!("{kind} {number}"), str::to_owned)).collect()
+}
+
+/// Those of a scene's materials, and the one of things that have none.
+fn material_names(scene: &Scene) -> Vec<String> {
+    let mut names = names(scene.materials.iter().map(|material| material.name.as_deref()), "material");
+    names.push("default material".to_owned());
+    names
+}
+
 impl CompiledScene {
     /// Compiles a scene: decodes its pictures, flattens its objects, builds its hierarchies.
     ///
@@ -103,6 +119,8 @@ impl CompiledScene {
             ambient: scene.ambient,
             camera: scene.camera.clone(),
             object_names,
+            material_names: material_names(scene),
+            light_names: names(scene.lights.iter().map(|light| light.name.as_deref()), "light"),
             warnings: diagnostics,
             background,
             indices_d: materials.iter().map(|m| m.body.as_ref().map_or(1.0, |b| b.ior.index(SODIUM_D))).collect(),

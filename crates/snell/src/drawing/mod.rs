@@ -88,8 +88,20 @@ impl DrawingSettings {
 /// # Ok::<(), snell::viewing::ViewingError>(())
 /// ```
 pub fn draw(scene: &CompiledScene, settings: &DrawingSettings) -> Result<Page, ViewingError> {
+    draw_from(scene, &scene.camera, settings)
+}
+
+/// As [`draw`], seen by another camera than the scene's own.
+///
+/// # Errors
+/// As [`draw`].
+pub fn draw_from(
+    scene: &CompiledScene,
+    from: &scene::Camera,
+    settings: &DrawingSettings,
+) -> Result<Page, ViewingError> {
     let drawing = &settings.drawing;
-    let camera = Camera::new(&scene.camera, settings.width, settings.height, settings.pixel_grid)?;
+    let camera = Camera::new(from, settings.width, settings.height, settings.pixel_grid)?;
     let mut page = new_page(settings);
     let picture_height = page.height;
     let title_height = furniture::title_height(drawing);
@@ -143,6 +155,19 @@ pub fn check(scene: &CompiledScene, settings: &DrawingSettings) -> Result<(), Vi
     marks::all(scene, &DrawingSettings { drawing, ..settings.clone() }, &bounds)?;
     let page = new_page(settings);
     settings.plots.iter().try_for_each(|plot| plot_groups(plot, page.width, page.height).map(drop))
+}
+
+/// The box around all that is finite in a scene.
+pub fn finite_bounds(scene: &CompiledScene) -> Bounds3 {
+    lines::finite_bounds(&scene.geometry)
+}
+
+/// The box around each object that is finite, by its number.
+pub fn object_bounds(scene: &CompiledScene, object: u32) -> Option<Bounds3> {
+    let surfaces = scene.geometry.world_surfaces();
+    let of_object = surfaces.iter().filter(|surface| surface.object == object);
+    let bounds = of_object.fold(Bounds3::EMPTY, |all, surface| all.union(&surface.bounds));
+    bounds.is_finite().then_some(bounds)
 }
 
 /// The planes n and f that a camera's matrices are shown with: its own ones, or else such that they hold the scene.

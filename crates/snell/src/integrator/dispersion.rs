@@ -5,6 +5,7 @@
 //! the author allows; where all fit, light is not split at all. The samples of a pixel split at different places, so that
 //! their mean has seen many more wavelengths than each of them.
 
+use snell_math::dispersion::fraunhofer::SODIUM_D;
 use snell_math::spectrum::Bands;
 use snell_math::{Normal3, Rgb, Vector3};
 
@@ -31,6 +32,10 @@ pub struct Dispersion {
     splits: Vec<(u32, [(u16, u16); SHIFTS.len()])>,
     /// For each material; `None` where its index is the same for all wavelengths.
     bodies: Vec<Option<Indices>>,
+    /// For each material, the index that light has which is not split; 1 where it is opaque.
+    unsplit: Vec<f64>,
+    /// The wavelengths of `weights`, nanometres.
+    wavelengths: Vec<f64>,
     /// The angle that a pixel is seen under, radians.
     pixel_angle: f64,
 }
@@ -46,7 +51,14 @@ struct Indices {
 
 impl Dispersion {
     /// For the bodies of a scene, with at most `most` bands, seen with pixels of an angle in radians.
-    pub fn new(scene: &CompiledScene, most: u32, pixel_angle: f64) -> Self {
+    ///
+    /// With a wavelength in nanometres, all light is bent as it is at that wavelength, and nothing splits.
+    pub fn new(scene: &CompiledScene, most: u32, pixel_angle: f64, only_nm: Option<f64>) -> Self {
+        let most = if only_nm.is_some() { 1 } else { most };
+        let unsplit = |material: &crate::material::Material| {
+            material.body.as_ref().map_or(1.0, |body| body.ior.index(only_nm.unwrap_or(SODIUM_D)))
+        };
+        let unsplit: Vec<f64> = scene.materials.iter().map(unsplit).collect();
         let mut counts: Vec<u32> = COUNTS.into_iter().filter(|&count| count < most).collect();
         counts.extend((most > 1).then_some(most.min(Bands::MAX)));
         let (mut weights, mut wavelengths, mut splits) = (Vec::new(), Vec::new(), Vec::new());
@@ -68,7 +80,8 @@ impl Dispersion {
             let bands = wavelengths.iter().map(|&wavelength| body.ior.index(wavelength)).collect();
             Some(Indices { bands, ends: ENDS_NM.map(|wavelength| body.ior.index(wavelength)) })
         };
-        Self { bodies: scene.materials.iter().map(indices).collect(), weights, splits, pixel_angle }
+        let bodies = scene.materials.iter().map(indices).collect();
+        Self { bodies, unsplit, wavelengths, weights, splits, pixel_angle }
     }
 
     /// True where no body disperses, and nothing splits.
@@ -81,7 +94,6 @@ impl Dispersion {
     /// a sample with that number of a place to split; `None` where it stays together.
     pub fn split(
         &self,
-        scene: &CompiledScene,
         [before, beyond]: [Option<Inside>; 2],
         wo: Vector3,
         normal: Normal3,
@@ -89,7 +101,7 @@ impl Dispersion {
     ) -> Option<impl Iterator<Item = (Band, Rgb)>> {
         let ends = |inside: Option<Inside>| match inside.map(|i| (i, &self.bodies[i.material as usize])) {
             Some((_, Some(indices))) => (indices.ends, true),
-            Some((inside, None)) => ([scene.index_d(Some(inside)); 2], false),
+            Some((inside, None)) => ([self.unsplit[inside.material as usize]; 2], false),
             None => ([1.0; 2], false),
         };
         let ((before, before_disperses), (beyond, beyond_disperses)) = (ends(before), ends(beyond));
@@ -112,14 +124,20 @@ impl Dispersion {
         Some((first..end).map(|band| (Band(band), self.weights[usize::from(band)])))
     }
 
-    /// The index of refraction of a body in a band; at the D line where the ray carries all light; 1 outside of all.
+    /// The wavelength that stands for a band, in nanometres.
+    pub fn wavelength_nm(&self, Band(band): Band) -> Option<f64> {
+        self.wavelengths.get(usize::from(band)).copied()
+    }
+
+    /// The index of refraction of a body in a band; at the D line, or at the only wavelength, where the ray carries all light; 1
+    /// outside of all.
     #[inline]
-    pub fn index(&self, scene: &CompiledScene, inside: Option<Inside>, band: Option<Band>) -> f64 {
+    pub fn index(&self, inside: Option<Inside>, band: Option<Band>) -> f64 {
         if let (Some(inside), Some(Band(band))) = (inside, band)
             && let Some(indices) = &self.bodies[inside.material as usize]
         {
             return indices.bands[usize::from(band)];
         }
-        scene.index_d(inside)
+        inside.map_or(1.0, |inside| self.unsplit[inside.material as usize])
     }
 }

@@ -144,13 +144,26 @@ impl<O: Observer> Sink<'_, O> {
     /// Tells the observer what a ray met.
     #[inline]
     pub fn met(&mut self, task: &RayTask, interaction: Option<&SurfaceInteraction>) {
-        self.observer.hit(task, interaction);
+        self.observer.hit(task, interaction, self.media.current(task.media));
+    }
+
+    /// Who watches, to be told of what only the integrator knows; where nobody does, nothing should be worked out for it, see
+    /// [`Sink::is_watched`].
+    #[inline]
+    pub fn observer(&mut self) -> &mut O {
+        self.observer
     }
 
     /// True where somebody watches, and what only a watcher would see is to be worked out.
     #[inline(always)]
     pub fn is_watched(&self) -> bool {
         O::WATCHES
+    }
+
+    /// True where somebody wants to know of surfaces and boundaries.
+    #[inline(always)]
+    pub fn is_detailed(&self) -> bool {
+        O::DETAILS
     }
 
     /// Asks how much of a light arrives; the answer is added to the sample after the generation.
@@ -200,12 +213,13 @@ impl<O: Observer> Sink<'_, O> {
         }
     }
 
-    /// Which of some rays are followed that are to be spawned with shares of their parents' throughput, and what they carry; the
+    /// Which of some rays of a kind are followed that are to be spawned with shares of their parents' throughput, and what they carry; the
     /// limits cut the others.
     #[inline(always)]
     pub fn follow<L: Lanes>(
         &mut self,
         parents: &ShadedRays<'_>,
+        kind: RayKind,
         lanes: Bits,
         weight: LaneColor<L::Floats>,
     ) -> (Bits, LaneColor<L::Floats>) {
@@ -231,7 +245,7 @@ impl<O: Observer> Sink<'_, O> {
                 followed |= Bits::lane(lane);
                 continue;
             };
-            self.cut(notes.id, cut, Rgb::from(column(&weights, lane)));
+            self.cut(notes.id, kind, cut, Rgb::from(column(&weights, lane)));
         }
         (followed, throughput)
     }
@@ -297,7 +311,7 @@ impl<O: Observer> Sink<'_, O> {
     #[inline]
     pub fn pass(&mut self, task: &RayTask, ray: Ray, media: MediumStack) {
         if task.passes >= MAX_PASSES {
-            self.cut(task.id, Cut::Depth, task.throughput);
+            self.cut(task.id, task.kind, Cut::Depth, task.throughput);
             return;
         }
         let id = self.take_id();
@@ -335,7 +349,7 @@ impl<O: Observer> Sink<'_, O> {
 
     /// Tells that a path was not followed, and what it carried.
     pub fn cut_path(&mut self, task: &RayTask, why: Cut, weight: Rgb) {
-        self.cut(task.id, why, weight);
+        self.cut(task.id, task.kind, why, weight);
     }
 
     /// As [`Sink::ask`], of a question whose answer is known: its terms are what arrives.
@@ -380,8 +394,8 @@ impl<O: Observer> Sink<'_, O> {
         queue
     }
 
-    fn cut(&mut self, parent: u32, why: Cut, weight: Rgb) {
+    fn cut(&mut self, parent: u32, kind: RayKind, why: Cut, weight: Rgb) {
         self.statistics.add_cut_weight(weight);
-        self.observer.cut(parent, why, weight);
+        self.observer.cut(parent, kind, why, weight);
     }
 }

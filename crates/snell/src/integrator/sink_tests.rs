@@ -7,7 +7,7 @@ use snell_math::{Point3, Ray, Rgb, Vector3};
 use snell_scene::scene::Shadows;
 
 use super::{QUEUES, Rules, ShadedRays, Sink, Spawn};
-use crate::observe::RayTree;
+use crate::observe::{CutRay, RayTree};
 use crate::statistics::Statistics;
 use crate::task::{Cut, MediumStack, MediumStacks, QuestionQueue, RayKind, RayQueue, RayTask, SampleSums, Term};
 
@@ -65,7 +65,7 @@ fn with(
 /// Spawns an upward ray with a weight.
 fn spawn(sink: &mut Sink<'_, RayTree>, parents: &ShadedRays<'_>, weight: f32) {
     let weight = LaneColor::<f32>::splat(Rgb::gray(weight));
-    let (followed, throughput) = sink.follow::<f64>(parents, Bits::lane(0), weight);
+    let (followed, throughput) = sink.follow::<f64>(parents, RayKind::Reflected, Bits::lane(0), weight);
     if followed.any() {
         let (origin, direction) = (Point3::ORIGIN.into(), Vector3::Y.into());
         let kind = RayKind::Reflected;
@@ -88,7 +88,7 @@ fn rays_too_deep_or_too_light_are_cut_and_their_weight_is_known() {
         let parent = task(depth, 1.0);
         let (next, tree, statistics, _) = with(RULES, &parent, |sink, parents| spawn(sink, parents, weight));
         assert!(next.is_empty() && statistics.reflected_rays == 0);
-        assert_eq!(tree.rays[0].cuts, [(why, Rgb::gray(weight))]);
+        assert_eq!(tree.rays[0].cuts, [CutRay { kind: RayKind::Reflected, why, weight: Rgb::gray(weight) }]);
         assert!((statistics.cut_weight() - f64::from(weight)).abs() < 1e-9);
     }
     let all = Rules { min_weight: 0.0, ..RULES };
@@ -116,7 +116,8 @@ fn a_ray_that_passes_stays_what_it_was_but_not_for_ever() {
         let (next, tree, statistics, _) = with(RULES, &ray, |sink, _| sink.pass(&ray, beyond, MediumStack::default()));
         assert_eq!((statistics.refracted_rays, statistics.reflected_rays), (0, 0), "it is no new ray");
         let Some(&again) = next.first() else {
-            assert_eq!(tree.rays[0].cuts, [(Cut::Depth, ray.throughput)]);
+            let cut = CutRay { kind: ray.kind, why: Cut::Depth, weight: ray.throughput };
+            assert_eq!(tree.rays[0].cuts, [cut]);
             break;
         };
         assert_eq!((again.depth, again.throughput, again.kind), (ray.depth, ray.throughput, ray.kind));

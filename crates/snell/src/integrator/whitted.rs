@@ -6,7 +6,7 @@
 //! place of the first.
 
 use snell_math::lanes::{Bits, Floats, LaneColor, LaneVector, Lanes, WIDTH};
-use snell_math::{Ray, Rgb, Vector3};
+use snell_math::{Normal3, Ray, Rgb, Vector3};
 use snell_scene::scene::Medium;
 
 use super::dispersion::Dispersion;
@@ -17,7 +17,7 @@ use crate::geometry::{Geometry, HitRows};
 use crate::interaction::{LaneSurface, SurfaceRows};
 use crate::light::Light;
 use crate::material::{LaneBsdf, Material};
-use crate::observe::Observer;
+use crate::observe::{BoundaryCrossing, Observer};
 use crate::optics::{beer_lambert, fresnel_dielectric_lanes, reflect_lanes, refract_lanes};
 use crate::task::{Band, Crossing, Inside, MediumStack, RayKind, RayRows, RayTask, Term, column, set_column};
 use crate::texture::{LaneCoordinates, ViewProjection};
@@ -33,8 +33,18 @@ pub struct Whitted {
 impl Whitted {
     /// For a scene seen by a camera, splitting white light into at most `bands` wavelength bands at dispersive surfaces.
     pub fn new(scene: &CompiledScene, camera: &Camera, bands: u32) -> Self {
-        let dispersion = Dispersion::new(scene, bands, camera.pixel_angle());
+        Self::at_wavelength(scene, camera, bands, None)
+    }
+
+    /// As [`Whitted::new`], with all light bent as it is at one wavelength, in nanometres, where that is given.
+    pub fn at_wavelength(scene: &CompiledScene, camera: &Camera, bands: u32, only_nm: Option<f64>) -> Self {
+        let dispersion = Dispersion::new(scene, bands, camera.pixel_angle(), only_nm);
         Self { dispersion, camera: camera.clone(), view: view_of(camera) }
+    }
+
+    /// The wavelength that stands for a band of this scene, in nanometres.
+    pub fn wavelength_nm(&self, band: Band) -> Option<f64> {
+        self.dispersion.wavelength_nm(band)
     }
 
     /// What a ray sees that leaves the scene.
@@ -193,6 +203,11 @@ impl Whitted {
             }
         }
 
+        if out.is_detailed() {
+            for lane in lanes.lanes() {
+                out.observer().surface(rays.rows.notes[rays.at + lane].id, &bsdf.lane(lane));
+            }
+        }
         let mut shading = Shading { scene, rays: *rays, surface, wo: -direction, out };
         shading.add_local_terms(lanes, &bsdf);
         let mirrored = lanes.without(bsdf.mirror.is_black());
@@ -253,7 +268,7 @@ impl Whitted {
             let crossing = boundary.crossings[lane];
             let sides = [crossing.before, crossing.beyond];
             let (wo, normal) = (LaneVector::<f64>::load(&wo, lane), LaneVector::<f64>::load(&normal, lane));
-            let Some(bands) = self.dispersion.split(scene, sides, wo.into(), normal.into(), notes.split) else {
+            let Some(bands) = self.dispersion.split(sides, wo.into(), normal.into(), notes.split) else {
                 continue;
             };
             split |= Bits::lane(lane);
@@ -288,25 +303,31 @@ impl Whitted {
         weight: LaneColor<L::Floats>,
         shading: &mut Shading<'_, '_, '_, L, O>,
     ) -> LaneColor<L::Floats> {
-        let Shading { scene, rays, surface, wo, .. } = *shading;
+        let Shading { rays, surface, wo, .. } = *shading;
         let (mut before, mut beyond, mut after) = ([1.0; WIDTH], [1.0; WIDTH], [MediumStack::EMPTY; WIDTH]);
         for lane in lanes.lanes() {
             let crossing = &boundary.crossings[lane];
             let band = rays.rows.notes[rays.at + lane].band.or(band);
-            before[lane] = self.dispersion.index(scene, crossing.before, band);
-            beyond[lane] = self.dispersion.index(scene, crossing.beyond, band);
+            before[lane] = self.dispersion.index(crossing.before, band);
+            beyond[lane] = self.dispersion.index(crossing.beyond, band);
             after[lane] = crossing.after;
         }
         let (eta_before, eta_beyond) = (L::load(&before, 0), L::load(&beyond, 0));
         let eta = eta_before / eta_beyond;
         let (refracts, direction) = refract_lanes(wo, boundary.normal, eta);
-        let (reflect_share, transmit_share) = boundary.shares(wo, eta_before, eta_beyond, refracts);
+        let reflectance = boundary.reflectance(wo, eta_before, eta_beyond);
+        let (reflect_share, transmit_share) = boundary.shares(reflectance, refracts);
+        if shading.out.is_detailed() {
+            let shares = [reflect_share, transmit_share, weight];
+            boundary.tell(lanes, (&before, &beyond), (refracts, direction), reflectance, shares, band, shading);
+        }
         let refracted = lanes & refracts;
         shading.out.total_internal_reflection(&rays, lanes.without(refracts));
         if refracted.is_empty() {
             return reflect_share;
         }
-        let (followed, throughput) = shading.out.follow::<L>(&rays, refracted, weight * transmit_share);
+        let (followed, throughput) =
+            shading.out.follow::<L>(&rays, RayKind::Refracted, refracted, weight * transmit_share);
         if followed.any() {
             let flat = surface.flat_normal(wo);
             // On a smooth mesh the shading normal may send it back to the side it came from; then the flat one decides.
@@ -343,7 +364,11 @@ fn travel<O: Observer>(
         if !medium.scattering.is_black() {
             scattering::gather(scene, &task, medium, distance, out);
         }
-        let left = task.throughput * beer_lambert(medium.absorption + medium.scattering, distance);
+        let transmittance = beer_lambert(medium.absorption + medium.scattering, distance);
+        if out.is_watched() {
+            out.observer().travelled(task.id, transmittance);
+        }
+        let left = task.throughput * transmittance;
         set_column(&mut throughput, at + lane, left.to_array());
     }
     throughput
@@ -383,28 +408,73 @@ fn lobes<L: Lanes>(
 }
 
 impl<L: Lanes> Boundary<'_, L> {
+    /// Fresnel's reflectance.
+    #[inline(always)]
+    fn reflectance(&self, wo: LaneVector<L>, eta_before: L, eta_beyond: L) -> L {
+        fresnel_dielectric_lanes(self.normal.dot(wo), eta_before, eta_beyond)
+    }
+
     /// The coefficients of the reflected and the refracted rays.
     ///
     /// Under total internal reflection all that either would carry is reflected: the lecture's function has no transmitted
     /// ray there and says nothing of its share, but light does not vanish.
     #[inline(always)]
-    fn shares(
-        &self,
-        wo: LaneVector<L>,
-        eta_before: L,
-        eta_beyond: L,
-        refracts: Bits,
-    ) -> (LaneColor<L::Floats>, LaneColor<L::Floats>) {
+    fn shares(&self, reflectance: L, refracts: Bits) -> (LaneColor<L::Floats>, LaneColor<L::Floats>) {
         let Self { fresnel, reflect, transmit, .. } = *self;
         let black = LaneColor::splat(Rgb::BLACK);
         if fresnel {
-            let reflectance = fresnel_dielectric_lanes(self.normal.dot(wo), eta_before, eta_beyond).to_floats();
+            let reflectance = reflectance.to_floats();
             let transmittance = L::Floats::splat(1.0) - reflectance;
             let reflected = (reflect * reflectance).or_where_not(refracts, reflect);
             (reflected, (transmit * transmittance).or_where_not(refracts, black))
         } else {
             let reflected = reflect.or_where_not(refracts, reflect + transmit);
             (reflected, transmit.or_where_not(refracts, black))
+        }
+    }
+}
+
+impl<L: Lanes> Boundary<'_, L> {
+    /// Tells a watcher what happens here: to which indices, where light goes on and whither, how much is reflected, and what the
+    /// reflected and the refracted ray and this part of the light are weighted with.
+    #[expect(clippy::too_many_arguments, reason = "what its only caller has worked out")]
+    #[inline(never)]
+    fn tell<O: Observer>(
+        &self,
+        lanes: Bits,
+        (before, beyond): (&[f64; WIDTH], &[f64; WIDTH]),
+        (refracts, direction): (Bits, LaneVector<L>),
+        reflectance: L,
+        shares: [LaneColor<L::Floats>; 3],
+        band: Option<Band>,
+        shading: &mut Shading<'_, '_, '_, L, O>,
+    ) {
+        let rays = shading.rays;
+        let [mut normals, mut directions] = [[[0.0; WIDTH]; 3]; 2];
+        self.normal.store(&mut normals, 0);
+        direction.store(&mut directions, 0);
+        let mut reflectances = [0.0; WIDTH];
+        reflectance.store(&mut reflectances, 0);
+        let mut weights = [[[0.0; WIDTH]; 3]; 3];
+        for (share, weights) in shares.iter().zip(&mut weights) {
+            share.store(weights, 0);
+        }
+        for lane in lanes.lanes() {
+            let (notes, crossing) = (&rays.rows.notes[rays.at + lane], &self.crossings[lane]);
+            let refracts = refracts.has(lane);
+            let [reflected, transmitted, share] = [0, 1, 2].map(|i: usize| Rgb::from(column(&weights[i], lane)));
+            let crossing = BoundaryCrossing {
+                media: [crossing.before, crossing.beyond],
+                indices: [before[lane], beyond[lane]],
+                band: notes.band.or(band),
+                normal: Normal3::from(Vector3::from(column(&normals, lane))),
+                refracted: refracts.then(|| Vector3::from(column(&directions, lane))),
+                reflectance: if refracts { reflectances[lane] } else { 1.0 },
+                fresnel: self.fresnel,
+                weights: [reflected, transmitted],
+                share,
+            };
+            shading.out.observer().boundary(notes.id, &crossing);
         }
     }
 }
@@ -466,7 +536,7 @@ impl<L: Lanes, O: Observer> Shading<'_, '_, '_, L, O> {
             return;
         }
         let Self { rays, surface, wo, .. } = *self;
-        let (followed, throughput) = self.out.follow::<L>(&rays, lanes, weight);
+        let (followed, throughput) = self.out.follow::<L>(&rays, RayKind::Reflected, lanes, weight);
         if followed.any() {
             let mut direction = reflect_lanes(wo, surface.consistent_normal(wo));
             let flat = surface.flat_normal(wo);

@@ -10,6 +10,7 @@ mod paths;
 mod settings;
 #[cfg(test)]
 mod tests;
+mod watch;
 
 use std::sync::Mutex;
 
@@ -20,16 +21,17 @@ use snell_math::{Ray, Rgb, sampling};
 
 pub use paths::{DARK, PathSettings, explain_path, render_paths};
 pub use settings::RenderSettings;
+pub use watch::{Watch, explain};
 
 use crate::camera::Camera;
 use crate::compile::CompiledScene;
 use crate::film::PixelSum;
 use crate::geometry::Hit;
-use crate::integrator::{Integrator, Rules, Whitted};
-use crate::observe::{NoObserver, RayTree};
+use crate::integrator::{Integrator, Rules};
+use crate::observe::NoObserver;
 use crate::render::adaptive::{Display, Range};
 use crate::render::layers::{FirstHit, FirstHits};
-use crate::statistics::Statistics;
+use crate::statistics::{SamplePlace, Statistics};
 use crate::task::RayRows;
 use crate::trace::{CameraRays, FirstHitWatch, Scratch, Tracer};
 use crate::viewing::ViewingError;
@@ -111,7 +113,7 @@ pub fn render(
     progress: &dyn Progress,
 ) -> Result<Rendering, ViewingError> {
     let camera = settings.camera(scene)?;
-    let integrator = Whitted::new(scene, &camera, settings.bands);
+    let integrator = settings.integrator(scene, &camera);
     let job = Job { scene, integrator: &integrator, camera: &camera, settings };
     let run = || job.run(progress);
     // A pool of its own where a number of threads is asked for; else the one of the process, with a thread for every core.
@@ -119,29 +121,6 @@ pub fn render(
         Some(Ok(pool)) => Ok(pool.install(run)),
         _ => Ok(run()),
     }
-}
-
-/// Traces one sample of one pixel with the code that renders it, and remembers everything.
-///
-/// # Errors
-/// [`ViewingError`], where the scene's camera is degenerate.
-pub fn explain(
-    scene: &CompiledScene,
-    settings: &RenderSettings,
-    pixel: [u32; 2],
-    sample: u32,
-) -> Result<RayTree, ViewingError> {
-    let camera = settings.camera(scene)?;
-    let integrator = Whitted::new(scene, &camera, settings.bands);
-    let job = Job { scene, integrator: &integrator, camera: &camera, settings };
-    let mut tree = RayTree::default();
-    let mut scratch = Scratch::default();
-    let (ray, split) = job.camera_sample(pixel, sampling::pixel_sample(sample), sample);
-    let far = camera.far_distance(&ray);
-    let camera_ray = [(ray, split)];
-    let mut to_far = |_: usize, _: &Ray, hit: &mut Option<Hit>| *hit = hit.filter(|hit| hit.t <= far);
-    job.tracer().trace(camera_ray.as_slice(), &mut scratch, &mut Statistics::default(), &mut tree, Some(&mut to_far));
-    Ok(tree)
 }
 
 /// One rendering: what every tile needs.
@@ -177,6 +156,11 @@ impl Pixel {
     /// Its place in rows from the top.
     fn place(self, width: u32) -> usize {
         self.y as usize * width as usize + self.x as usize
+    }
+
+    /// One of its samples.
+    fn sample(self, sample: u32) -> SamplePlace {
+        SamplePlace { y: self.y, x: self.x, sample }
     }
 }
 
@@ -304,20 +288,23 @@ impl<I: Integrator<State = ()>> Job<'_, I> {
             let is_watched = self.settings.layers || self.has_far_plane();
             let watch: Option<&mut FirstHitWatch<'_>> = if is_watched { Some(&mut watch) } else { None };
             let colors = self.tracer().trace(&rays, scratch, &mut statistics, &mut NoObserver, watch);
-            let mut nonfinite = 0;
-            means.extend(colors.chunks_exact(per_pixel).map(|colors| {
+            let place = |pixel: Pixel, sample: usize| pixel.sample(samples.first + sample as u32);
+            means.extend(colors.chunks_exact(per_pixel).zip(pixels).map(|(colors, &pixel)| {
                 if let [color] = colors {
                     let (mean, is_finite) = PixelSum::mean_of_one(*color);
-                    nonfinite += u64::from(!is_finite);
+                    if !is_finite {
+                        statistics.add_nonfinite(place(pixel, 0));
+                    }
                     return mean;
                 }
                 let mut sum = PixelSum::default();
-                for &color in colors {
-                    nonfinite += u64::from(!sum.add(color));
+                for (sample, &color) in colors.iter().enumerate() {
+                    if !sum.add(color) {
+                        statistics.add_nonfinite(place(pixel, sample));
+                    }
                 }
                 sum.mean()
             }));
-            statistics.nonfinite_samples += nonfinite;
         }
         let mut gathered = lock(gathered);
         gathered.statistics.merge(&statistics);
@@ -398,14 +385,14 @@ impl<I: Integrator<State = ()>> Job<'_, I> {
         let mut watch = |_: usize, ray: &Ray, hit: &mut Option<Hit>| self.cut_far(ray, hit);
         let watch: Option<&mut FirstHitWatch<'_>> = if self.has_far_plane() { Some(&mut watch) } else { None };
         let colors = self.tracer().trace(&rays, scratch, &mut statistics, &mut NoObserver, watch);
-        let mut nonfinite = 0;
         for (refined, colors) in portion.iter_mut().zip(colors.chunks_exact(samples.places.len())) {
-            for &color in colors {
-                nonfinite += u64::from(!refined.sum.add(color));
+            for (sample, &color) in (samples.first..).zip(colors) {
+                if !refined.sum.add(color) {
+                    statistics.add_nonfinite(refined.pixel.sample(sample));
+                }
             }
             refined.range = refined.range.including(&display.range(colors));
         }
-        statistics.nonfinite_samples += nonfinite;
         progress.advance(portion.len() as u64, statistics.rays());
         statistics
     }

@@ -71,7 +71,8 @@ const SAMPLES_BETWEEN: u32 = 8;
 /// scene.objects.push(Object::shape(Shape::Sphere { center: Point3::ORIGIN, radius: 1.0 }));
 /// let compiled = CompiledScene::build(&scene).unwrap();
 /// let settings = RenderSettings { width: 5, height: 5, ..RenderSettings::from(&scene.settings) };
-/// let picture = render_paths(&compiled, &settings, &PathSettings::default(), &NoProgress).unwrap().image;
+/// let paths = PathSettings { samples: 256, ..PathSettings::default() };
+/// let picture = render_paths(&compiled, &settings, &paths, &NoProgress).unwrap().image;
 /// assert!((picture.get(2, 2).unwrap().g - 0.8).abs() < 0.02);
 /// ```
 pub fn render_paths(

@@ -8,6 +8,7 @@ use snell_scene::scene::{self, Antialiasing, PixelGrid, Shadows};
 
 use crate::camera::Camera;
 use crate::compile::CompiledScene;
+use crate::integrator::Whitted;
 use crate::viewing::ViewingError;
 
 /// Settings of one rendering.
@@ -29,6 +30,9 @@ pub struct RenderSettings {
     pub shadows: Shadows,
     /// How many bands white light splits into, 1 to 64.
     pub bands: u32,
+    /// Bends all light as it is bent at this wavelength, in nanometres; `None` for that of the sodium D line, and bands where white
+    /// light splits.
+    pub wavelength_nm: Option<f64>,
     /// Where rays pass through pixels.
     pub pixel_grid: PixelGrid,
     /// The edge of a tile in pixels. The picture does not depend on it.
@@ -57,6 +61,7 @@ impl From<&scene::Settings> for RenderSettings {
             antialiasing: settings.antialiasing,
             shadows: settings.shadows,
             bands: settings.bands,
+            wavelength_nm: None,
             pixel_grid: settings.pixel_grid,
             tile_size: 32,
             threads: None,
@@ -75,6 +80,11 @@ impl RenderSettings {
     /// [`ViewingError`], where it is degenerate.
     pub fn camera(&self, scene: &CompiledScene) -> Result<Camera, ViewingError> {
         Camera::new(&scene.camera, self.width, self.height, self.pixel_grid)
+    }
+
+    /// The algorithm that renders it.
+    pub(super) fn integrator(&self, scene: &CompiledScene, camera: &Camera) -> Whitted {
+        Whitted::at_wavelength(scene, camera, self.bands, self.wavelength_nm)
     }
 
     /// The tone curve under its name in [`snell_image`].

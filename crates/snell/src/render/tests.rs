@@ -8,8 +8,9 @@ use snell_scene::scene::{Antialiasing, Background, Frame, Material, Object, Scen
 use snell_testkit::{TestRng, must_fail};
 
 use super::adaptive::{Display, unsettled};
-use super::{Job, Progress, RenderSettings, Whitted, explain, render};
+use super::{Job, Progress, RenderSettings, explain, render};
 use crate::compile::CompiledScene;
+use crate::integrator::Whitted;
 use crate::viewing::ViewingError;
 
 /// A glowing ball before a grey background.

@@ -12,7 +12,7 @@ use snell_scene::scene::{Medium, Shadows};
 use crate::compile::CompiledScene;
 use crate::geometry::{Blockers, Geometry, Hit, HitRows, QueryScratch};
 use crate::interaction::{LaneSurface, SurfaceRows};
-use crate::observe::Observer;
+use crate::observe::{Observer, ShadowStep};
 use crate::optics::{self, fresnel_dielectric_lanes};
 use crate::statistics::Statistics;
 use crate::task::{Inside, MediumStack, MediumStacks, QuestionRows, SampleSums, column, set_column};
@@ -77,7 +77,7 @@ pub fn answer<L: Lanes, O: Observer>(
             let open = active.without(blocked);
             let is_inside = open.lanes().any(|lane| rows.media[at + lane] != MediumStack::EMPTY);
             if is_inside || !scratch.blockers.hits.is_empty() {
-                transmitted = context.filter::<L>(rows, at, open, scratch);
+                transmitted = context.filter::<L, O>(rows, at, open, scratch, observer);
             }
         }
     }
@@ -86,6 +86,9 @@ pub fn answer<L: Lanes, O: Observer>(
         let mut shares = [[0.0; WIDTH]; 3];
         transmitted.store(&mut shares, 0);
         for lane in active.lanes() {
+            if O::DETAILS && blocked.has(lane) {
+                context.tell_blocker(rows, at + lane, observer);
+            }
             let transmittance = if blocked.has(lane) { Rgb::BLACK } else { Rgb::from(column(&shares, lane)) };
             observer.shadow(&rows.question(at + lane), transmittance);
         }
@@ -108,6 +111,9 @@ pub fn answer<L: Lanes, O: Observer>(
     }
 }
 
+/// How many transparent surfaces the search for a blocker goes through: it is a watcher's alone.
+const MOST_BEFORE_BLOCKER: u32 = 256;
+
 /// How far shadow rays have come.
 struct Way<L: Lanes> {
     /// The share of the light that is left.
@@ -121,12 +127,13 @@ struct Way<L: Lanes> {
 impl Context<'_> {
     /// The shares of lights that arrive in some lanes through the transparent surfaces in their way.
     #[inline(always)]
-    fn filter<L: Lanes>(
+    fn filter<L: Lanes, O: Observer>(
         &mut self,
         rows: &QuestionRows,
         at: usize,
         lanes: Bits,
         scratch: &mut ShadowScratch,
+        observer: &mut O,
     ) -> LaneColor<L::Floats> {
         let ShadowScratch { blockers, hits, met, surfaces } = scratch;
         hits.iter_mut().for_each(Vec::clear);
@@ -151,15 +158,58 @@ impl Context<'_> {
                 break;
             }
             self.scene.geometry.surfaces::<L>((&rows.origin, &rows.direction), at, met, Bits(meeting), surfaces);
-            self.go_through(rows, at, Bits(meeting), met, surfaces, &mut way);
+            self.go_through(rows, at, Bits(meeting), met, surfaces, &mut way, observer);
         }
+        let before = way.share;
         self.travel(rows, at, lanes, &rows.distance, &mut way);
+        if O::WATCHES {
+            for lane in lanes.without(before.is_black()).lanes() {
+                let medium = self.media.current(way.media[lane]);
+                let absorption = self.absorption(rows, at + lane, medium, rows.distance[at + lane] - way.from[lane]);
+                let (surface, transmittance, reflectance) = (None, Rgb::WHITE, 0.0);
+                observer.shadow_step(&ShadowStep { surface, medium, absorption, transmittance, reflectance });
+            }
+        }
         way.share
     }
 
+    /// What a body leaves of a shadow ray's light over a distance.
+    fn absorption(&self, rows: &QuestionRows, place: usize, medium: Option<Inside>, distance: f64) -> Rgb {
+        let body = medium.and_then(|inside| self.scene.materials[inside.material as usize].body.as_ref());
+        match body.filter(|body| !body.medium.is_clear()) {
+            Some(body) => extinction(&body.medium, distance, rows.notes[place].extinction_scale),
+            None => Rgb::WHITE,
+        }
+    }
+
+    /// Tells a watcher which surface it is that blocks all of a light: the nearest one that nothing goes through.
+    #[inline(never)]
+    fn tell_blocker<O: Observer>(&mut self, rows: &QuestionRows, place: usize, observer: &mut O) {
+        let (mut ray, mut left) = (rows.ray(place), rows.distance[place]);
+        for _ in 0..MOST_BEFORE_BLOCKER {
+            let Some(hit) = self.scene.geometry.intersect(&ray, left, self.query) else { return };
+            let surface = self.scene.interaction(&ray, &hit);
+            let is_passed =
+                self.shadows == Shadows::Filtered && self.scene.materials[surface.material as usize].body.is_some();
+            if !is_passed {
+                observer.shadow_step(&ShadowStep {
+                    surface: Some(surface),
+                    medium: self.media.current(rows.media[place]),
+                    absorption: Rgb::WHITE,
+                    transmittance: Rgb::BLACK,
+                    reflectance: 0.0,
+                });
+                return;
+            }
+            ray = surface.spawn_ray(ray.direction);
+            left -= hit.t;
+        }
+    }
+
     /// Each of some rays goes on to a surface, and through it.
+    #[expect(clippy::too_many_arguments, reason = "a private step of the function above")]
     #[inline(always)]
-    fn go_through<L: Lanes>(
+    fn go_through<L: Lanes, O: Observer>(
         &mut self,
         rows: &QuestionRows,
         at: usize,
@@ -167,8 +217,10 @@ impl Context<'_> {
         met: &HitRows,
         surfaces: &SurfaceRows,
         way: &mut Way<L>,
+        observer: &mut O,
     ) {
         let scene = self.scene;
+        let before = (way.media, way.from);
         self.travel(rows, at, lanes, &met.t, way);
         let surface = LaneSurface::<L>::load(surfaces, at);
         let direction = LaneVector::load(&rows.direction, at);
@@ -207,6 +259,19 @@ impl Context<'_> {
         let reflectance = fresnel_dielectric_lanes(cosine, L::load(&rarer, 0), L::load(&denser, 0));
         let through = way.share * LaneColor::load(&transmit, 0) * (L::splat(1.0) - reflectance).to_floats();
         way.share = through.or_where_not(lanes, way.share);
+        if O::WATCHES {
+            let mut reflectances = [0.0; WIDTH];
+            reflectance.store(&mut reflectances, 0);
+            for lane in lanes.lanes() {
+                let (media, from) = (before.0[lane], before.1[lane]);
+                let medium = self.media.current(media);
+                let absorption = self.absorption(rows, at + lane, medium, met.t[at + lane] - from);
+                let reflectance = reflectances[lane];
+                let transmittance = Rgb::from(column(&transmit, lane)) * (1.0 - reflectance) as f32;
+                let surface = Some(scene.geometry.interaction_of(met, surfaces, at + lane));
+                observer.shadow_step(&ShadowStep { surface, medium, absorption, transmittance, reflectance });
+            }
+        }
     }
 
     /// Each of some rays travels up to a distance in what it is in.

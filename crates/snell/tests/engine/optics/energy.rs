@@ -16,7 +16,7 @@ fn is_white(stage: &Stage, tolerance: f32) -> Statistics {
 /// The same in every `step`th column and row.
 fn every_pixel_is_white(stage: &Stage, step: u32, tolerance: f32) {
     for ([x, y], tree) in stage.trees_every(step) {
-        let cut = tree.rays.iter().flat_map(|ray| &ray.cuts).fold(Rgb::BLACK, |sum, (_, weight)| sum + *weight);
+        let cut = tree.rays.iter().flat_map(|ray| &ray.cuts).fold(Rgb::BLACK, |sum, cut| sum + cut.weight);
         assert_near(tree.sum() + cut, Rgb::WHITE, tolerance, &format!("pixel {x}, {y}"));
     }
 }
