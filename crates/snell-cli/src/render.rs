@@ -5,6 +5,7 @@ use std::time::Duration;
 use snell::compile::CompiledScene;
 use snell::render::{PathSettings, RenderSettings, Rendering, render, render_paths};
 use snell::scene::reader::nff;
+use snell::scene::scene::IntegratorKind;
 use snell::scene::{Diagnostic, Diagnostics, Scene};
 use snell::statistics::SamplePlace;
 
@@ -47,13 +48,13 @@ pub fn run(arguments: &RenderArguments, mut watch: Stopwatch) -> Result<u8, Fail
 
     let compiled = compile(&scene, &mut told)?;
     let settings = render_settings(arguments, &scene);
+    let paths = path_settings(arguments, &scene)?;
     drop(scene);
     diagnostics::print(&told);
     let build = watch.lap();
 
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::input(Diagnostic::error(format!("signals cannot be listened to: {error}"))))?;
-    let paths = path_settings(arguments)?;
     let progress = RenderProgress::start(interrupt.clone(), !arguments.quiet, arguments.paths.time);
     if let Some(property) = &property {
         map::render(&compiled, &settings, property, &target, &progress)?;
@@ -158,9 +159,10 @@ fn render_settings(arguments: &RenderArguments, scene: &Scene) -> RenderSettings
 }
 
 /// How paths are traced; `None` where they are not.
-fn path_settings(arguments: &RenderArguments) -> Result<Option<PathSettings>, Failure> {
+fn path_settings(arguments: &RenderArguments, scene: &Scene) -> Result<Option<PathSettings>, Failure> {
     let PathArguments { integrator, samples, noise, time, seed, no_photons } = &arguments.paths;
-    if *integrator != Some(IntegratorName::Path) {
+    let of_scene = scene.settings.integrator == IntegratorKind::Path;
+    if !integrator.map_or(of_scene, |name| name == IntegratorName::Path) {
         let flags = [
             ("--samples", samples.is_some()),
             ("--noise", noise.is_some()),
@@ -176,7 +178,7 @@ fn path_settings(arguments: &RenderArguments) -> Result<Option<PathSettings>, Fa
             }
         };
     }
-    let defaults = PathSettings::default();
+    let defaults = PathSettings { samples: scene.settings.samples, ..PathSettings::default() };
     let without_end = if noise.is_some() || time.is_some() { MOST_SAMPLES } else { defaults.samples };
     Ok(Some(PathSettings {
         samples: samples.unwrap_or(without_end),

@@ -127,7 +127,7 @@ fn lights_have_colour_intensity_falloff_and_angles() {
     assert_eq!(direction, Vector3::new(0.0, -4.0, 0.0));
     assert!((cone_angle - std::f64::consts::FRAC_PI_4).abs() < 1e-15);
     assert!((full_angle - 0.8 * cone_angle).abs() < 1e-15);
-    assert_eq!(scene.lights[1].kind, LightKind::Directional { direction: Vector3::new(0.0, -2.0, 0.0) });
+    assert_eq!(scene.lights[1].kind, LightKind::Directional { direction: Vector3::new(0.0, -2.0, 0.0), angle: 0.0 });
 }
 
 #[test]

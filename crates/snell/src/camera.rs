@@ -5,6 +5,7 @@
 //! Shirley et al., *Fundamentals of Computer Graphics*, chapter 7.
 
 use snell_math::lanes::{LaneVector, Lanes};
+use snell_math::warp::Aperture;
 use snell_math::{Point3, Ray, Vector3, portable};
 use snell_scene::scene;
 
@@ -28,6 +29,7 @@ pub struct Camera {
     shift: f64,
     window_from_raster: RectangleMap,
     raster_from_window: RectangleMap,
+    lens: Option<scene::ThinLens>,
 }
 
 /// Where a world point appears.
@@ -115,6 +117,7 @@ impl Camera {
             shift,
             window_from_raster,
             raster_from_window,
+            lens: description.lens,
         })
     }
 
@@ -140,6 +143,26 @@ impl Camera {
             }
             Projection::Orthographic => [eye + across + back * L::splat(self.near), -back],
         }
+    }
+
+    /// A ray through a raster position and a place on the lens, by two numbers in [0, 1): all of one position meet where the lens
+    /// is sharp. (Cook, Porter and Carpenter, "Distributed Ray Tracing", SIGGRAPH 1984.) The ray of [`Camera::generate_ray`]
+    /// without a lens.
+    #[inline]
+    pub fn generate_lens_ray(&self, x: f64, y: f64, u: [f64; 2]) -> Ray {
+        let ray = self.generate_ray(x, y);
+        let Some(scene::ThinLens { radius, focus, blades }) = self.lens else { return ray };
+        let [a, b] = Aperture::new(blades, 0.0).sample(u);
+        let across = self.right * (a * radius) + self.up * (b * radius);
+        let sharp = self.eye + ray.direction * (focus / -ray.direction.dot(self.back));
+        let origin = ray.origin + across;
+        Ray::new(origin, (sharp - origin).normalize())
+    }
+
+    /// True where it has a lens.
+    #[inline]
+    pub fn has_lens(&self) -> bool {
+        self.lens.is_some()
     }
 
     /// How far along a ray of [`Camera::generate_ray`] the far plane is; infinite where there is none.
@@ -305,7 +328,7 @@ mod tests {
         ) {
             prop_assume!(gaze.cross(up).length() > 1e-3);
             let grid = if corners { PixelGrid::Corners } else { PixelGrid::Centers };
-            let description = scene::Camera { eye: Point3::ORIGIN + eye * 10.0, gaze, up, frame };
+            let description = scene::Camera { eye: Point3::ORIGIN + eye * 10.0, gaze, up, frame, lens: None };
             let camera = Camera::new(&description, size.0, size.1, grid).expect("not degenerate");
             let (x, y) = (x * f64::from(size.0), y * f64::from(size.1));
             let ray = camera.generate_ray(x, y);
@@ -325,7 +348,7 @@ mod tests {
         ) {
             prop_assume!(gaze.cross(up).length() > 1e-3);
             let grid = if corners { PixelGrid::Corners } else { PixelGrid::Centers };
-            let description = scene::Camera { eye: Point3::new(1.0, -2.0, 3.0), gaze, up, frame };
+            let description = scene::Camera { eye: Point3::new(1.0, -2.0, 3.0), gaze, up, frame, lens: None };
             let camera = Camera::new(&description, size.0, size.1, grid).expect("not degenerate");
             prop_assert_eq!(camera.pixels(), [size.0, size.1]);
             let pipeline = camera.pipeline(-1.0, -20.0).expect("in order");
@@ -353,7 +376,7 @@ mod tests {
         ) {
             prop_assume!(gaze.cross(up).length() > 1e-3);
             let eye = Point3::ORIGIN + eye * 10.0;
-            let description = scene::Camera { eye, gaze, up, frame: Frame::HorizontalFov(fov) };
+            let description = scene::Camera { eye, gaze, up, frame: Frame::HorizontalFov(fov), lens: None };
             let camera = Camera::new(&description, 640, 480, PixelGrid::Centers).expect("not degenerate");
             // The image plane is as far from the eye as makes a pixel one unit wide.
             let n = 640.0 / camera.window().width();

@@ -15,7 +15,7 @@ pub struct Light {
 #[derive(Clone, Debug)]
 enum Place {
     Point { position: Point3 },
-    Directional { to_light: Vector3 },
+    Directional { to_light: Vector3, angle: f64 },
     Spot { position: Point3, axis: Vector3, cosine_cone: f64, cosine_full: f64 },
 }
 
@@ -24,8 +24,8 @@ enum Place {
 pub enum LightOrigin {
     /// At a point of the world.
     Point(Point3),
-    /// Infinitely far away in a direction of unit length.
-    Direction(Vector3),
+    /// Infinitely far away in a direction of unit length, seen under an angle in radians.
+    Direction(Vector3, f64),
 }
 
 /// What one light sends to one point.
@@ -56,7 +56,9 @@ impl Light {
         let unit = |v: Vector3| v.try_normalize().unwrap_or(Vector3::Y);
         let place = match light.kind {
             scene::LightKind::Point { position } => Place::Point { position },
-            scene::LightKind::Directional { direction } => Place::Directional { to_light: -unit(direction) },
+            scene::LightKind::Directional { direction, angle } => {
+                Place::Directional { to_light: -unit(direction), angle }
+            }
             scene::LightKind::Spot { position, direction, cone_angle, full_angle } => Place::Spot {
                 position,
                 axis: unit(direction),
@@ -76,7 +78,7 @@ impl Light {
     pub fn origin(&self) -> LightOrigin {
         match self.place {
             Place::Point { position } | Place::Spot { position, .. } => LightOrigin::Point(position),
-            Place::Directional { to_light } => LightOrigin::Direction(to_light),
+            Place::Directional { to_light, angle } => LightOrigin::Direction(to_light, angle),
         }
     }
 
@@ -120,7 +122,7 @@ impl Light {
     pub fn illuminate_lanes<L: Lanes>(&self, point: LaneVector<L>) -> (Bits, LaneIllumination<L>) {
         let intensity = LaneColor::splat(self.intensity);
         let position = match &self.place {
-            Place::Directional { to_light } => {
+            Place::Directional { to_light, .. } => {
                 let to_light = LaneVector::splat(to_light.to_array());
                 let distance = L::splat(f64::INFINITY);
                 return (L::all(), LaneIllumination { to_light, distance, irradiance: intensity });

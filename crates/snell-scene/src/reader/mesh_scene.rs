@@ -62,7 +62,7 @@ fn scene_around(mut file: MeshFile, z_up: bool) -> Scene {
     for (name, to_light, strength) in [("key", TO_KEY, 0.75), ("fill", TO_FILL, 0.2)] {
         scene.lights.push(Light {
             name: Some(name.to_owned()),
-            kind: LightKind::Directional { direction: -to_light },
+            kind: LightKind::Directional { direction: -to_light, angle: 0.0 },
             intensity: Rgb::gray(strength),
             falloff: Falloff::None,
         });
@@ -97,7 +97,13 @@ fn frame(mesh: &Mesh, world_from_mesh: &Transform, bounds: &Bounds3, size: f64) 
     let distance = corners.map(|corners| corners.iter().fold(0.0, needed)).reduce(|| 0.0, f64::max);
     // Never within the mesh, and in front of a mesh without any extent.
     let distance = distance.max(size);
-    Camera { eye: center + backward * distance, gaze: -backward, up: Vector3::Y, frame: Frame::VerticalFov(fov) }
+    Camera {
+        eye: center + backward * distance,
+        gaze: -backward,
+        up: Vector3::Y,
+        frame: Frame::VerticalFov(fov),
+        lens: None,
+    }
 }
 
 fn add_mesh(scene: &mut Scene, file: MeshFile, turn: Transform) {

@@ -13,6 +13,19 @@ pub struct Camera {
     pub up: Vector3,
     /// The projection and what of the world is in the picture.
     pub frame: Frame,
+    /// A lens, which is sharp at one distance alone, where paths are traced; `None` for a pinhole.
+    pub lens: Option<ThinLens>,
+}
+
+/// A thin lens in front of a perspective camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThinLens {
+    /// The radius of its aperture, world units, positive.
+    pub radius: f64,
+    /// How far in front of the eye, along the gaze, is what is sharp; positive.
+    pub focus: f64,
+    /// How many blades its aperture has; 0 for a round one.
+    pub blades: u32,
 }
 
 /// The projection and its window.
@@ -65,6 +78,7 @@ impl Default for Camera {
             gaze: Vector3::new(0.0, 0.0, -1.0),
             up: Vector3::Y,
             frame: Frame::HorizontalFov(snell_math::portable::radians(40.0)),
+            lens: None,
         }
     }
 }

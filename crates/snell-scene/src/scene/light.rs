@@ -27,6 +27,8 @@ pub enum LightKind {
     Directional {
         /// The direction in which the light travels, any positive length.
         direction: Vector3,
+        /// The angle that it is seen under, radians: what makes shadows soft where paths are traced; 0 for a point.
+        angle: f64,
     },
     /// A cone of light from one point.
     Spot {

@@ -18,7 +18,7 @@ pub mod texture;
 use snell_math::Rgb;
 
 pub use background::{Background, ImageAsset};
-pub use camera::{Camera, Frame};
+pub use camera::{Camera, Frame, ThinLens};
 pub use drawing::{
     AxesLength, CameraMark, Drawing, Extent, GridMark, GroundGrid, HiddenLines, LineMark, PointMark, StrokeBy,
 };
@@ -28,7 +28,7 @@ pub use material::{Dielectric, Film, Material, Medium, Metal, MetalIndex};
 pub use mesh::Mesh;
 pub use object::{CsgOperation, Grid, Object, ObjectKind, Prototype, Shape};
 pub use plot::{Align, Axis, AxisPlace, CurveKind, Plot, PlotCurve, PlotFit, PlotLabel, Ticks};
-pub use settings::{Antialiasing, PixelGrid, Settings, Shadows, Tone};
+pub use settings::{Antialiasing, IntegratorKind, PixelGrid, Settings, Shadows, Tone};
 pub use texture::{Mapping, Pattern, Space, Texture};
 
 use crate::table::Table;

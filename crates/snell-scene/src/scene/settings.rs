@@ -27,6 +27,10 @@ pub struct Settings {
     pub exposure: f32,
     /// Where in the window the rays of pixels pass.
     pub pixel_grid: PixelGrid,
+    /// How light is followed.
+    pub integrator: IntegratorKind,
+    /// The most samples of a pixel where paths are traced, from 1.
+    pub samples: u32,
 }
 
 impl Default for Settings {
@@ -43,8 +47,19 @@ impl Default for Settings {
             tone: Tone::None,
             exposure: 0.0,
             pixel_grid: PixelGrid::Centers,
+            integrator: IntegratorKind::Whitted,
+            samples: 64,
         }
     }
+}
+
+/// How light is followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum IntegratorKind {
+    /// Recursive ray tracing, as the lecture has it.
+    Whitted,
+    /// Path tracing: light as it is.
+    Path,
 }
 
 /// How pixels are sampled.

@@ -150,7 +150,12 @@ fn draw_panel(
     let looking = |width: f64, center: Point3| {
         let eye = center + toward * (4.0 * size);
         let frame = scene::Frame::OrthographicWidth(width);
-        Camera::new(&scene::Camera { eye, gaze: -toward, up: Vector3::Y, frame }, 1000, 850, PixelGrid::Centers)
+        Camera::new(
+            &scene::Camera { eye, gaze: -toward, up: Vector3::Y, frame, lens: None },
+            1000,
+            850,
+            PixelGrid::Centers,
+        )
     };
     // Fitted to what is to be seen, with room for labels.
     let first = looking(2.0 * size, center)?;

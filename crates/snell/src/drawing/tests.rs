@@ -33,6 +33,7 @@ fn scene(objects: Vec<Object>) -> Scene {
         gaze: Point3::new(0.0, 0.5, 0.0) - eye,
         up: Vector3::Y,
         frame: Frame::HorizontalFov(portable::radians(40.0)),
+        lens: None,
     };
     scene
 }

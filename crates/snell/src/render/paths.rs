@@ -20,7 +20,7 @@ use crate::geometry::Hit;
 use crate::integrator::{Path, PathSample, PhotonPasses, Purpose, Rules};
 use crate::observe::{NoObserver, RayTree};
 use crate::statistics::Statistics;
-use crate::task::RayRows;
+use crate::task::{RayRows, set_column};
 use crate::trace::{CameraRays, FirstHitWatch, Scratch, Tracer};
 use crate::viewing::ViewingError;
 
@@ -148,8 +148,8 @@ fn brightness(color: Rgb) -> f64 {
 struct PathRays<'a> {
     camera: &'a Camera,
     pixels: &'a [Pixel],
-    /// Where in its pixel each is.
-    places: Vec<[f64; 2]>,
+    /// Where in its pixel each is, and where on the lens.
+    places: Vec<[f64; 4]>,
 }
 
 impl CameraRays for PathRays<'_> {
@@ -163,9 +163,18 @@ impl CameraRays for PathRays<'_> {
         for lane in 0..L::COUNT {
             // Beyond the last one it is the last one again.
             let number = (first + lane).min(self.pixels.len() - 1);
-            let (Pixel { x, y }, [dx, dy]) = (self.pixels[number], self.places[number]);
+            let (Pixel { x, y }, [dx, dy, ..]) = (self.pixels[number], self.places[number]);
             (xs[lane], ys[lane]) = (f64::from(x) + dx, f64::from(y) + dy);
             split[at + lane] = 0;
+        }
+        if self.camera.has_lens() {
+            for lane in 0..L::COUNT {
+                let [.., u, v] = self.places[(first + lane).min(self.pixels.len() - 1)];
+                let ray = self.camera.generate_lens_ray(xs[lane], ys[lane], [u, v]);
+                set_column(&mut rows.origin, at + lane, ray.origin.to_array());
+                set_column(&mut rows.direction, at + lane, ray.direction.to_array());
+            }
+            return;
         }
         let [origin, direction] = self.camera.generate_rays(L::load(&xs, 0), L::load(&ys, 0));
         origin.store(&mut rows.origin, at);
@@ -264,10 +273,7 @@ impl Job<'_, Path> {
     ) -> PathRays<'a> {
         state.clear();
         state.extend(pixels.iter().map(|pixel| self.integrator.begin(seed, [pixel.x, pixel.y], sample)));
-        let places = state.iter().map(|path| {
-            let [x, y, ..] = path.draw(Purpose::Camera);
-            [x, y]
-        });
+        let places = state.iter().map(|path| path.draw(Purpose::Camera));
         PathRays { camera: self.camera, pixels, places: places.collect() }
     }
 

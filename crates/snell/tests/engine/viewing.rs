@@ -124,6 +124,7 @@ fn every_point_of_the_reference_table() {
             gaze: row.look_at - row.eye,
             up: row.up.into(),
             frame: Frame::VerticalFov(row.fov),
+            lens: None,
         };
         let camera = Camera::new(&description, row.size[0], row.size[1], PixelGrid::Centers).expect("not degenerate");
         if let Some(drawn) = camera.project(row.world) {

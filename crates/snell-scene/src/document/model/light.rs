@@ -58,6 +58,10 @@ pub struct DirectionalLight {
     #[serde(default = "one")]
     #[schemars(range(min = 0))]
     pub intensity: f32,
+    /// The angle that it is seen under: the sun's is 0.53. `path` shows soft shadows for it.
+    #[serde(default)]
+    #[schemars(range(min = 0, max = 90), extend("x-unit" = "degrees"))]
+    pub angle: f64,
 }
 
 /// A cone of light from one point.

@@ -24,7 +24,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use camera::{
-    Background, BackgroundGradient, BackgroundStop, Camera, GradientStop, Panorama, Photograph, Projection, Window,
+    Background, BackgroundGradient, BackgroundStop, Camera, CameraLens, GradientStop, Panorama, Photograph, Projection,
+    Window,
 };
 pub use drawing::{CameraMark, Drawing, GridMark, GroundGrid, HiddenLines, LineMark, PointMark, StrokeBy};
 pub use formula::{Formula, Quantity};
@@ -158,6 +159,11 @@ pub struct Render {
     /// see more wavelengths.
     #[schemars(range(min = 1, max = 64))]
     pub bands: u32,
+    /// How light is followed.
+    pub integrator: Integrator,
+    /// The most samples of a pixel where paths are traced.
+    #[schemars(range(min = 1, max = 16777216))]
+    pub samples: u32,
 }
 
 impl Default for Render {
@@ -169,8 +175,24 @@ impl Default for Render {
             antialiasing: Either::A(AntialiasingMethod::Adaptive),
             shadows: Shadows::Filtered,
             bands: of.bands,
+            integrator: Integrator::Whitted,
+            samples: of.samples,
         }
     }
+}
+
+/// How light is followed.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Integrator {
+    /// Recursive ray tracing, as the lecture has it: mirrors, glass, point lights, shadows.
+    Whitted,
+    /// Path tracing: light as it is, from lights of any size, off everything, and through glass.
+    Path,
+}
+
+impl Forms for Integrator {
+    const FORMS: &'static [Form] = &[Form::Text];
 }
 
 /// How pixels are sampled.

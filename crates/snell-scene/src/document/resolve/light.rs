@@ -17,7 +17,10 @@ impl Resolver<'_> {
         }
         if let Some(directional) = &light.directional {
             self.direction(&directional.direction, "the light's direction", Vector3::Y);
-            let kind = LightKind::Directional { direction: directional.direction.value.into() };
+            let kind = LightKind::Directional {
+                direction: directional.direction.value.into(),
+                angle: portable::radians(directional.angle),
+            };
             return Light {
                 name,
                 kind,

@@ -126,6 +126,11 @@ impl Resolver<'_> {
                 model::Shadows::None => scene::Shadows::None,
             },
             bands: render.bands,
+            integrator: match render.integrator {
+                model::Integrator::Whitted => scene::IntegratorKind::Whitted,
+                model::Integrator::Path => scene::IntegratorKind::Path,
+            },
+            samples: render.samples,
             tone: match image.tone {
                 model::Tone::None => scene::Tone::None,
                 model::Tone::Reinhard => scene::Tone::Reinhard,

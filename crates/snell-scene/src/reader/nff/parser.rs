@@ -209,7 +209,7 @@ impl<'a> Parser<'_, 'a> {
             _ => 1.0,
         };
         let half = portable::atan(portable::tan(0.5 * portable::radians(angle)) * row_more);
-        self.builder.camera = Camera { eye: from, gaze, up, frame: Frame::VerticalFov(2.0 * half) };
+        self.builder.camera = Camera { eye: from, gaze, up, frame: Frame::VerticalFov(2.0 * half), lens: None };
         Some(())
     }
 

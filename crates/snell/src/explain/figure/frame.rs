@@ -78,7 +78,7 @@ pub fn camera(
     let all = finite_bounds(scene);
     let reach = if all.is_finite() { all.union(&bounds).diagonal().length() } else { size };
     let eye = center + back * (2.0 * (reach + width));
-    let camera = scene::Camera { eye, gaze: -back, up, frame: Frame::OrthographicWidth(width) };
+    let camera = scene::Camera { eye, gaze: -back, up, frame: Frame::OrthographicWidth(width), lens: None };
     Ok(looking(camera, aspect))
 }
 

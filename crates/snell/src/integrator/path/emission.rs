@@ -208,8 +208,8 @@ impl Emission {
                         let power = scaled(spectrum, PI * share / density);
                         (share > 0.0).then_some(Emitted { origin, direction, power, density: f64::INFINITY, light })
                     }
-                    LightOrigin::Direction(to_light) => {
-                        let direction = -to_light;
+                    LightOrigin::Direction(to_light, angle) => {
+                        let direction = -super::lights::within(to_light, angle, place);
                         let origin = self.targets.sample_across(direction, target, way);
                         let density = probability * self.targets.density_across(origin, direction);
                         let power = scaled(spectrum, PI / density);

@@ -6,13 +6,15 @@
 use std::f64::consts::PI;
 
 use snell_math::spectrum::SmoothEmission;
-use snell_math::{Point3, Rgb, Vector3};
+use snell_math::warp::Cone;
+use snell_math::{Point3, Rgb, Vector3, portable};
 
 use super::environment::Environment;
 use super::spectra::{Colors, Spectral, Wavelengths, scaled};
 use crate::compile::CompiledScene;
 use crate::geometry::EmittingSurface;
 use crate::interaction::{SolidId, SurfaceInteraction};
+use crate::light::LightOrigin;
 use crate::texture::ViewProjection;
 
 /// Up to so many lights are weighed anew at every point; more are chosen by their power.
@@ -258,13 +260,12 @@ impl Lights {
                 let arriving = light_of_scene.illuminate(point)?;
                 let share = PI * f64::from(arriving.irradiance.max_abs() / light_of_scene.intensity().max_abs());
                 let light_over_density = Some(wavelengths.nm().map(|nm| share * spectrum.at(nm)));
-                Some(Arriving {
-                    light,
-                    wi: arriving.to_light,
-                    distance: arriving.distance,
-                    light_over_density,
-                    density: None,
-                })
+                // A light of some angle is a point that is elsewhere each time: nothing meets it by chance.
+                let wi = match light_of_scene.origin() {
+                    LightOrigin::Direction(to_light, angle) => within(to_light, angle, u),
+                    LightOrigin::Point(_) => arriving.to_light,
+                };
+                Some(Arriving { light, wi, distance: arriving.distance, light_over_density, density: None })
             }
             LightIndex::Surface(number) => {
                 let emitter = &self.surfaces[number];
@@ -321,4 +322,14 @@ impl Lights {
             environment.density(direction) * self.probability(scene, LightIndex::Environment, point)
         })
     }
+}
+
+/// A direction of those in which a light of some angle is seen, by two numbers in [0, 1).
+pub fn within(to_light: Vector3, angle: f64, u: [f64; 2]) -> Vector3 {
+    if angle == 0.0 {
+        return to_light;
+    }
+    // 1 − cos of half the angle.
+    let half = portable::sin(0.25 * angle);
+    Cone::new(to_light, 2.0 * half * half).sample(u)
 }

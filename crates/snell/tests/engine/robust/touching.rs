@@ -87,7 +87,7 @@ fn light_reaches_the_table_below_the_glass() {
                 let mut stage = scene(body, table, table_first, "");
                 stage.scene.lights.push(Light::new(&scene::Light {
                     name: None,
-                    kind: scene::LightKind::Directional { direction: -Vector3::Y },
+                    kind: scene::LightKind::Directional { direction: -Vector3::Y, angle: 0.0 },
                     intensity: Rgb::WHITE,
                     falloff: scene::Falloff::None,
                 }));
