@@ -1,4 +1,4 @@
-//! Golden pictures: every scene in `scenes/` that has a light is rendered small and must equal `goldens/NAME.png` in every bit.
+//! Golden pictures: every scene in `scenes/` that has a light, or is for paths, is rendered small and must equal `goldens/NAME.png` in every bit.
 //! The others are figures, to be drawn and not rendered.
 //!
 //! A test for each scene, named after it, so that `cargo xtask golden NAME` runs one of them. A scene without a picture fails,
@@ -14,12 +14,15 @@ use libtest_mimic::{Arguments, Failed, Trial};
 use snell::compile::CompiledScene;
 use snell::image::{BitDepth, DisplayImage, ToneCurve};
 use snell::math::color::srgb_to_linear;
-use snell::render::{NoProgress, RenderSettings, render};
+use snell::render::{NoProgress, PathSettings, RenderSettings, render, render_paths};
+use snell::scene::scene::IntegratorKind;
 use snell_testkit::assert_golden;
 use snell_testkit::golden::{Failure, check};
 
 /// Pixels from left to right of a golden picture; its height follows from the scene's own proportions.
 const WIDTH: u32 = 160;
+/// The samples of a pixel where paths are traced.
+const PATH_SAMPLES: u32 = 8;
 
 fn main() {
     let arguments = Arguments::from_args();
@@ -58,18 +61,28 @@ fn goldens() -> PathBuf {
 
 fn rendered_scenes() -> BTreeSet<String> {
     let mut names = stems(&files::root().join("scenes"), "toml");
-    names.retain(|name| !files::scene_of_file(&format!("scenes/{name}.toml")).lights.is_empty());
+    names.retain(|name| {
+        let scene = files::scene_of_file(&format!("scenes/{name}.toml"));
+        !scene.lights.is_empty() || scene.settings.integrator == IntegratorKind::Path
+    });
     names
 }
 
-/// A scene as its golden picture shows it: with its own settings, but small.
+/// A scene as its golden picture shows it: with its own settings, but small, and where paths are traced with few samples.
 fn picture(name: &str) -> DisplayImage {
     let scene = files::scene_of_file(&format!("scenes/{name}.toml"));
     let compiled = CompiledScene::build(&scene).unwrap_or_else(|error| panic!("{name}: {error}"));
     let own = RenderSettings::from(&scene.settings);
     let height = (f64::from(own.height) * f64::from(WIDTH) / f64::from(own.width)).round().max(1.0) as u32;
     let settings = RenderSettings { width: WIDTH, height, ..own };
-    let rendering = render(&compiled, &settings, &NoProgress).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let rendering = match scene.settings.integrator {
+        IntegratorKind::Whitted => render(&compiled, &settings, &NoProgress),
+        IntegratorKind::Path => {
+            let paths = PathSettings { samples: PATH_SAMPLES, ..PathSettings::default() };
+            render_paths(&compiled, &settings, &paths, &NoProgress)
+        }
+    };
+    let rendering = rendering.unwrap_or_else(|error| panic!("{name}: {error}"));
     assert_eq!(rendering.statistics.nonfinite_samples, 0, "{name}: samples that are no numbers");
     DisplayImage::develop(&rendering.image, settings.tone_curve(), settings.exposure, BitDepth::Eight)
 }

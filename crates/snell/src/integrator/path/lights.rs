@@ -19,6 +19,8 @@ use crate::texture::ViewProjection;
 
 /// Up to so many lights are weighed anew at every point; more are chosen by their power.
 const WEIGHED: usize = 32;
+/// For this share of choices each light is as likely as another.
+const EVEN: f64 = 0.2;
 
 /// All lights of a scene.
 #[derive(Debug)]
@@ -195,13 +197,26 @@ impl Lights {
         }
     }
 
+    /// The weights of all lights for a point: their sum, and how many are not 0.
+    fn weights(&self, scene: &CompiledScene, point: Point3) -> (f64, u32) {
+        self.all().fold((0.0, 0), |(sum, count), index| {
+            let weight = self.weight(scene, index, point);
+            (sum + weight, count + u32::from(weight > 0.0))
+        })
+    }
+
+    /// The probability with which a light of a weight is chosen: by its weight mostly, and for a part each as likely as another, since
+    /// the one that would give most may be hidden.
+    fn probability(weight: f64, (sum, count): (f64, u32)) -> f64 {
+        if weight > 0.0 { (1.0 - EVEN) * weight / sum + EVEN / f64::from(count) } else { 0.0 }
+    }
+
     /// The probability with which a light is chosen for a point.
-    fn probability(&self, scene: &CompiledScene, index: LightIndex, point: Point3) -> f64 {
+    fn probability_of(&self, scene: &CompiledScene, index: LightIndex, point: Point3) -> f64 {
         if self.count() == 1 {
             return 1.0;
         }
-        let sum: f64 = (0..self.count()).map(|number| self.weight(scene, self.index(number), point)).sum();
-        self.weight(scene, self.index(self.number(index)), point) / sum
+        Self::probability(self.weight(scene, index, point), self.weights(scene, point))
     }
 
     /// Chooses a light for a point, and of one with extent a place, by a number in [0, 1) for the one and two for the other.
@@ -219,18 +234,18 @@ impl Lights {
             0 => return None,
             1 => (self.index(0), 1.0),
             _ => {
-                let sum: f64 = (0..count).map(|number| self.weight(scene, self.index(number), point)).sum();
-                let mut rest = choice * sum;
+                let weights = self.weights(scene, point);
+                let mut rest = choice;
                 let mut chosen = None;
-                for number in 0..count {
-                    let weight = self.weight(scene, self.index(number), point);
-                    if weight > 0.0 {
-                        chosen = Some((self.index(number), weight / sum));
-                        if rest < weight {
+                for index in self.all() {
+                    let probability = Self::probability(self.weight(scene, index, point), weights);
+                    if probability > 0.0 {
+                        chosen = Some((index, probability));
+                        if rest < probability {
                             break;
                         }
                     }
-                    rest -= weight;
+                    rest -= probability;
                 }
                 chosen?
             }
@@ -313,13 +328,13 @@ impl Lights {
         let LightIndex::Surface(number) = index else { return 0.0 };
         let surface = &self.surfaces[number].place.surface;
         let normal = interaction.geometric_normal.as_vector();
-        surface.density_from(point, interaction.point, normal) * self.probability(scene, index, point)
+        surface.density_from(point, interaction.point, normal) * self.probability_of(scene, index, point)
     }
 
     /// And a direction of the background.
     pub fn density_of_environment(&self, scene: &CompiledScene, point: Point3, direction: Vector3) -> f64 {
         self.environment.as_ref().map_or(0.0, |environment| {
-            environment.density(direction) * self.probability(scene, LightIndex::Environment, point)
+            environment.density(direction) * self.probability_of(scene, LightIndex::Environment, point)
         })
     }
 }
