@@ -249,7 +249,9 @@ impl Look<'_> {
             Phenomenon::Dispersion => {
                 let splits = rays.iter().filter(|ray| ray.boundaries.len() > 1);
                 let weight = splits.map(|ray| weight(ray.task.throughput)).fold(0.0, f64::max);
-                let is_of_band = |share: &&Share| rays.iter().any(|r| r.task.id == share.task && r.task.band.is_some());
+                // Rays are numbered in the order of the list.
+                let is_of_band =
+                    |share: &&Share| rays.get(share.task as usize).is_some_and(|ray| ray.task.band.is_some());
                 let of_bands = self.tree.shares.iter().filter(is_of_band);
                 let [r, g, b] = of_bands.fold(Rgb::BLACK, |sum, share| sum + share.value).to_array();
                 // Clear where much of its colour is left; where the bands come together again it is white.
