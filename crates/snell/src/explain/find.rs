@@ -202,7 +202,7 @@ impl Look<'_> {
         match phenomenon {
             Phenomenon::TotalInternalReflection => {
                 let total = rays.iter().filter(|ray| ray.total_internal_reflection);
-                total.map(|ray| weight(ray.task.throughput)).fold(0.0, f64::max)
+                total.map(|ray| self.share_below(ray).max(1e-6 * weight(ray.task.throughput))).fold(0.0, f64::max)
             }
             Phenomenon::OutsideHighlight if first_is_body && !is_leaving(camera) => {
                 self.share(camera, |term| matches!(term, Term::Specular(_)))
@@ -246,11 +246,17 @@ impl Look<'_> {
                     unblocked(shadow) * arrives.min(1.0 - arrives).max(0.0)
                 })
                 .fold(0.0, f64::max),
-            Phenomenon::Dispersion => rays
-                .iter()
-                .filter(|ray| ray.boundaries.len() > 1)
-                .map(|ray| weight(ray.task.throughput))
-                .fold(0.0, f64::max),
+            Phenomenon::Dispersion => {
+                let splits = rays.iter().filter(|ray| ray.boundaries.len() > 1);
+                let weight = splits.map(|ray| weight(ray.task.throughput)).fold(0.0, f64::max);
+                // Rays are numbered in the order of the list.
+                let is_of_band =
+                    |share: &&Share| rays.get(share.task as usize).is_some_and(|ray| ray.task.band.is_some());
+                let of_bands = self.tree.shares.iter().filter(is_of_band);
+                let [r, g, b] = of_bands.fold(Rgb::BLACK, |sum, share| sum + share.value).to_array();
+                // Clear where much of its colour is left; where the bands come together again it is white.
+                f64::from(r.max(g).max(b) - r.min(g).min(b)).max(1e-6 * weight)
+            }
             Phenomenon::Absorption => rays
                 .iter()
                 .filter(|ray| object(ray).is_some())
@@ -304,6 +310,18 @@ impl Look<'_> {
             }
         }
         found
+    }
+
+    /// What all rays brought that followed from one.
+    fn share_below(&self, ray: &TracedRay) -> f64 {
+        let mut below: Vec<&TracedRay> = self.children(ray).collect();
+        let (mut sum, mut next) = (0.0, 0);
+        while let Some(ray) = below.get(next).copied() {
+            sum += self.share(ray, |_| true);
+            below.extend(self.children(ray));
+            next += 1;
+        }
+        sum
     }
 
     fn children<'t>(&'t self, parent: &'t TracedRay) -> impl Iterator<Item = &'t TracedRay> {
