@@ -14,6 +14,8 @@ use crate::process;
 
 /// How a picture of the gallery is rendered: wide enough for a page, smoothed as the scene asks; pixels.
 const RENDER_OPTIONS: &[&str] = &["--width", "960"];
+/// And one whose paths are traced, which takes its time.
+const PATH_OPTIONS: &[&str] = &["--width", "640", "--samples", "128"];
 
 /// Figures that `snell view` draws: both volumes side by side.
 const VIEWS: &[&str] = &["canonical-volume"];
@@ -53,8 +55,10 @@ pub fn run(arguments: Arguments) -> Outcome {
         let caption = Caption::of(&text).ok_or_else(|| {
             format!("{}: a scene starts with a comment: `# Title`, then what it shows", path.display())
         })?;
-        let is_rendered = text.lines().any(|line| line.trim_end() == "[[light]]");
-        entries.push(Entry { name, caption, is_rendered });
+        let has = |wanted: &str| text.lines().any(|line| line.trim_end() == wanted);
+        let is_of_paths = has("integrator = \"path\"");
+        let is_rendered = is_of_paths || has("[[light]]");
+        entries.push(Entry { name, caption, is_rendered, is_of_paths });
     }
 
     fs::create_dir_all(&folder).map_err(|error| format!("cannot make {}: {error}", folder.display()))?;
@@ -65,7 +69,7 @@ pub fn run(arguments: Arguments) -> Outcome {
             let mut command = process::program(&snell.to_string_lossy());
             command.args(&words).arg("-o").arg(&picture);
             if ending == "png" {
-                command.args(RENDER_OPTIONS);
+                command.args(if entry.is_of_paths { PATH_OPTIONS } else { RENDER_OPTIONS });
             }
             process::run(&mut command)?;
             let size = fs::metadata(&picture).map_err(|error| format!("{}: {error}", picture.display()))?.len();
@@ -127,8 +131,10 @@ fn remove_pictures_of_no_scene(folder: &Path, entries: &[Entry]) -> Outcome {
 struct Entry {
     name: String,
     caption: Caption,
-    /// It has a light; else it is only drawn.
+    /// It has a light, or paths are traced; else it is only drawn.
     is_rendered: bool,
+    /// Its paths are traced.
+    is_of_paths: bool,
 }
 
 impl Entry {
@@ -219,7 +225,7 @@ mod tests {
     fn the_page_shows_each_picture_with_its_command() {
         let entry = |name: &str, is_rendered| {
             let caption = Caption { title: "A".to_owned(), text: vec!["b".to_owned()] };
-            Entry { name: name.to_owned(), caption, is_rendered }
+            Entry { name: name.to_owned(), caption, is_rendered, is_of_paths: false }
         };
         let page = page_text(&[entry("one", true), entry("two", false), entry("canonical-volume", false)]);
         let parts = [

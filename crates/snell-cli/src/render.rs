@@ -178,6 +178,24 @@ fn path_settings(arguments: &RenderArguments, scene: &Scene) -> Result<Option<Pa
             }
         };
     }
+    let PictureArguments { aa, min_weight, shadows, bands, wavelength, .. } = &arguments.picture;
+    let flags = [
+        ("--aa", aa.is_some()),
+        ("--min-weight", min_weight.is_some()),
+        ("--shadows", shadows.is_some()),
+        ("--bands", bands.is_some()),
+        ("--wavelength", wavelength.is_some()),
+        ("--map", arguments.map.is_some()),
+    ];
+    if let Some((flag, _)) = flags.into_iter().find(|(_, is_given)| *is_given) {
+        let message = format!("{flag} is for `whitted`, and the paths of this picture are traced");
+        let help = if flag == "--aa" {
+            "use --samples, or --integrator whitted"
+        } else {
+            "leave it out, or use --integrator whitted"
+        };
+        return Err(Failure::usage(Diagnostic::error(message).help(help)));
+    }
     let defaults = PathSettings { samples: scene.settings.samples, ..PathSettings::default() };
     let without_end = if noise.is_some() || time.is_some() { MOST_SAMPLES } else { defaults.samples };
     Ok(Some(PathSettings {

@@ -17,6 +17,7 @@ mod meshes;
 mod models;
 mod nff;
 mod nff_povray;
+mod paths;
 mod pictures;
 mod programs;
 mod report;
@@ -93,6 +94,12 @@ const GROUPS: &[Group] = &[
     },
     Group { name: "roofline", summary: "what the machine could do at best", usual: false, run: roofline::run },
     Group { name: "drawings", summary: "what line drawings cost", usual: false, run: drawings::run },
+    Group {
+        name: "paths",
+        summary: "the error of path tracing after the same CPU time, against Mitsuba",
+        usual: false,
+        run: paths::run,
+    },
 ];
 
 /// What every benchmark is given.

@@ -7,6 +7,7 @@ mod explain;
 mod glass;
 mod mistakes;
 mod output;
+mod paths;
 mod render;
 mod scenes;
 mod schema;

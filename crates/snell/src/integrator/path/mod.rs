@@ -255,7 +255,10 @@ impl Path {
             hero_alone: step.path.wavelengths.is_hero_alone(),
         };
         let colors = self.materials.colors(&self.colors, number, &bsdf, &meeting);
-        let lobes = Lobes::new(&colors, interaction, wo);
+        let mut lobes = Lobes::new(&colors, interaction, wo);
+        if step.path.scattered.is_none() && step.path.specular == 0 {
+            lobes.favour_the_weaker();
+        }
         if lobes.is_lit() {
             self.ask_light(step, interaction, &lobes, crossing);
             if let Some(photons) = &self.photons {
