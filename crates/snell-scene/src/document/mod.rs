@@ -103,7 +103,7 @@ fn read(
         diagnostics.push(Diagnostic::error("the scene is nested too deeply with what `--set` puts into it"));
         return None;
     }
-    check::check(&mut root, &schema(), diagnostics);
+    check::check(&mut root, &schema::RuleBook::new(), diagnostics);
     match model::Document::deserialize(root) {
         Ok(document) => Some(resolve::resolve(document, name, assets, diagnostics)),
         Err(mismatch) => {

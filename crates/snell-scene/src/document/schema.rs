@@ -1,4 +1,10 @@
 //! The JSON Schema of the scene file, generated from the model, and the few words of it that the checks read.
+//!
+//! To generate it takes two milliseconds, longer than reading most scenes and rendering small ones. So the checks read an
+//! extract, `schema-rules.txt`: a definition a line, its name and its JSON without what only people read, and no line is
+//! parsed before a scene has what it is about. A test keeps the extract current.
+
+use std::cell::OnceCell;
 
 use serde_json::{Map, Value};
 
@@ -52,10 +58,87 @@ fn tidy(schema: &mut Value) {
     }
 }
 
+/// What only people read, and what the checks do without.
+#[cfg(test)]
+const FOR_PEOPLE: [&str; 5] = ["$schema", "title", "description", "default", "x-example"];
+
+/// The name under which the extract has the schema's root.
+const ROOT: &str = "#";
+
+/// The extract of a schema: a line for the root, then one for each definition.
+#[cfg(test)]
+pub(in crate::document) fn extract(schema: &Value) -> String {
+    fn without(schema: &Value) -> Value {
+        match schema {
+            Value::Array(items) => items.iter().map(without).collect(),
+            Value::Object(object) => {
+                let kept = object.iter().filter(|(word, _)| !FOR_PEOPLE.contains(&word.as_str()) && *word != "$defs");
+                let entry = |(word, value): (&String, &Value)| match value {
+                    // Under `properties` stand the author's keys, which may be called like words of the schema.
+                    Value::Object(keys) if word == "properties" => {
+                        (word.clone(), keys.iter().map(|(key, value)| (key.clone(), without(value))).collect())
+                    }
+                    _ => (word.clone(), without(value)),
+                };
+                kept.map(entry).collect()
+            }
+            _ => schema.clone(),
+        }
+    }
+    let definitions = schema["$defs"].as_object().into_iter().flatten();
+    let root = (ROOT, schema);
+    std::iter::once(root)
+        .chain(definitions.map(|(name, definition)| (name.as_str(), definition)))
+        .map(|(name, definition)| format!("{name} {}\n", without(definition)))
+        .collect()
+}
+
+/// The extract of the schema that the checks read, parsed as far as it was needed.
+pub(in crate::document) struct RuleBook {
+    definitions: Vec<(&'static str, &'static str, OnceCell<Option<Value>>)>,
+}
+
+impl RuleBook {
+    /// The committed extract.
+    pub fn new() -> Self {
+        let lines = include_str!("schema-rules.txt").lines();
+        let definition = |line: &'static str| line.split_once(' ').map(|(name, json)| (name, json, OnceCell::new()));
+        Self { definitions: lines.filter_map(definition).collect() }
+    }
+
+    fn get(&self, name: &str) -> Option<&Value> {
+        let (_, json, parsed) = self.definitions.iter().find(|(known, ..)| *known == name)?;
+        parsed.get_or_init(|| serde_json::from_str(json).ok()).as_ref()
+    }
+}
+
+/// What references are looked up in.
+#[derive(Clone, Copy)]
+enum Whole<'a> {
+    Schema(&'a Value),
+    Rules(&'a RuleBook),
+}
+
+impl<'a> Whole<'a> {
+    fn root(self) -> Option<&'a Value> {
+        match self {
+            Self::Schema(root) => Some(root),
+            Self::Rules(rules) => rules.get(ROOT),
+        }
+    }
+
+    fn definition(self, name: &str) -> Option<&'a Value> {
+        match self {
+            Self::Schema(root) => root.get("$defs")?.get(name),
+            Self::Rules(rules) => rules.get(name),
+        }
+    }
+}
+
 /// A part of the schema, with the whole to look references up in.
 #[derive(Clone, Copy)]
 pub(in crate::document) struct Part<'a> {
-    root: &'a Value,
+    whole: Whole<'a>,
     /// The part as it is written, before any reference is followed.
     pub written: &'a Map<String, Value>,
     /// The part with its reference followed.
@@ -65,22 +148,28 @@ pub(in crate::document) struct Part<'a> {
 impl<'a> Part<'a> {
     /// The whole schema.
     pub fn root(root: &'a Value) -> Option<Self> {
-        Self::new(root, root)
+        Self::new(Whole::Schema(root), root)
     }
 
-    fn new(root: &'a Value, written: &'a Value) -> Option<Self> {
+    /// The whole schema, by its extract for the checks.
+    pub fn rules(rules: &'a RuleBook) -> Option<Self> {
+        let whole = Whole::Rules(rules);
+        Self::new(whole, whole.root()?)
+    }
+
+    fn new(whole: Whole<'a>, written: &'a Value) -> Option<Self> {
         let written = written.as_object()?;
         let body = match written.get("$ref").and_then(Value::as_str) {
-            Some("#") => root.as_object()?,
-            Some(reference) => root.get("$defs")?.get(reference.strip_prefix("#/$defs/")?)?.as_object()?,
+            Some("#") => whole.root()?.as_object()?,
+            Some(reference) => whole.definition(reference.strip_prefix("#/$defs/")?)?.as_object()?,
             None => written,
         };
-        Some(Self { root, written, body })
+        Some(Self { whole, written, body })
     }
 
     /// Another part of the same schema.
     pub fn at(&self, written: &'a Value) -> Option<Self> {
-        Self::new(self.root, written)
+        Self::new(self.whole, written)
     }
 
     /// The name of the definition that this refers to.

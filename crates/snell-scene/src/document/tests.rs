@@ -5,10 +5,15 @@ use crate::assets::MemoryAssets;
 
 const DOCS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs");
 
-/// A path in `docs` and the text that belongs there.
-fn published() -> [(String, String); 2] {
-    let schema = serde_json::to_string_pretty(&schema()).unwrap() + "\n";
-    [(format!("{DOCS}/scene.schema.json"), schema), (format!("{DOCS}/scene-format.md"), reference())]
+/// The files that are written from the model, and the texts that belong there.
+fn published() -> [(String, String); 3] {
+    let schema = schema();
+    let rules = concat!(env!("CARGO_MANIFEST_DIR"), "/src/document/schema-rules.txt");
+    [
+        (rules.to_owned(), schema::extract(&schema)),
+        (format!("{DOCS}/scene.schema.json"), serde_json::to_string_pretty(&schema).unwrap() + "\n"),
+        (format!("{DOCS}/scene-format.md"), reference()),
+    ]
 }
 
 #[test]

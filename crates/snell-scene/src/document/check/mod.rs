@@ -10,7 +10,7 @@ mod say;
 mod table;
 mod text;
 
-use super::schema::Part;
+use super::schema::{Part, RuleBook};
 use super::tree::{Node, Value};
 use crate::diagnostic::{Diagnostic, Diagnostics, Span};
 use names::Names;
@@ -21,8 +21,8 @@ pub(in crate::document) use say::expected;
 const MAX_TOLD: usize = 100;
 
 /// Checks a whole file and takes out of its tree what is wrong.
-pub(in crate::document) fn check(root: &mut Node<'_>, schema: &serde_json::Value, diagnostics: &mut Diagnostics) {
-    let Some(part) = Part::root(schema) else { return };
+pub(in crate::document) fn check(root: &mut Node<'_>, rules: &RuleBook, diagnostics: &mut Diagnostics) {
+    let Some(part) = Part::rules(rules) else { return };
     let mut checker = Checker {
         root: part,
         rules: Rules::default(),
