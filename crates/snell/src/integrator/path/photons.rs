@@ -327,7 +327,7 @@ impl PhotonMap {
     }
 
     /// The weight of light that a path found by itself, which photons may have found too: `density` is that with which light sets out
-    /// (see [`Emitted::density`]), `cosine` and `sent` are those of the path where it was sent on.
+    /// (as it is kept with photons), `cosine` and `sent` are those of the path where it was sent on.
     pub fn weight_of_path(&self, density: f64, cosine: f64, sent: f64) -> f64 {
         1.0 / (1.0 + self.disks * density * cosine / sent)
     }

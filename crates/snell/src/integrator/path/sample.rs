@@ -14,7 +14,7 @@ pub struct PathSample {
     pub wavelengths: Wavelengths,
     /// What it carries: the factor on the light that it finds.
     pub throughput: Spectral,
-    /// By how much radiance is compressed where it is, over where it began; see [`super::lobes::Scattered::compression`].
+    /// By how much radiance is compressed where it is, over where it began: the square of a ratio of indices.
     pub compression: f64,
     /// Where it was last sent on by something that is not specular; `None` while nothing did.
     pub scattered: Option<Vertex>,
