@@ -115,11 +115,15 @@ pub fn render(
     let camera = settings.camera(scene)?;
     let integrator = settings.integrator(scene, &camera);
     let job = Job { scene, integrator: &integrator, camera: &camera, settings };
-    let run = || job.run(progress);
-    // A pool of its own where a number of threads is asked for; else the one of the process, with a thread for every core.
+    Ok(on_threads(settings, || job.run(progress)))
+}
+
+/// Does some work in a pool of its own where a number of threads is asked for; else in that of the process, with a thread for every
+/// core.
+fn on_threads<T: Send>(settings: &RenderSettings, work: impl FnOnce() -> T + Send) -> T {
     match settings.threads.map(|threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build()) {
-        Some(Ok(pool)) => Ok(pool.install(run)),
-        _ => Ok(run()),
+        Some(Ok(pool)) => pool.install(work),
+        _ => work(),
     }
 }
 

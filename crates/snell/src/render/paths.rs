@@ -12,7 +12,7 @@ use snell_math::{Ray, Rgb};
 use snell_scene::scene::Shadows;
 
 use super::layers::{FirstHit, FirstHits};
-use super::{Job, MAX_QUEUE, Pixel, Progress, RenderSettings, Rendering, Tile, lock};
+use super::{Job, MAX_QUEUE, Pixel, Progress, RenderSettings, Rendering, Tile, lock, on_threads};
 use crate::camera::Camera;
 use crate::compile::CompiledScene;
 use crate::film::PixelSum;
@@ -82,11 +82,7 @@ pub fn render_paths(
     progress: &dyn Progress,
 ) -> Result<Rendering, ViewingError> {
     let camera = settings.camera(scene)?;
-    let run = || run_paths(scene, &camera, settings, paths, progress);
-    match settings.threads.map(|threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build()) {
-        Some(Ok(pool)) => Ok(pool.install(run)),
-        _ => Ok(run()),
-    }
+    Ok(on_threads(settings, || run_paths(scene, &camera, settings, paths, progress)))
 }
 
 /// Traces one sample of one pixel with the code that renders it by path tracing, and remembers everything.
