@@ -48,10 +48,33 @@ impl Golden for Image<Rgb> {
 /// ```
 #[track_caller]
 pub fn assert_golden(name: &str, picture: &impl Golden, folder: impl AsRef<Path>) {
-    let bless = std::env::var_os("SNELL_BLESS").is_some_and(|value| value == "1");
-    if let Err(failure) = check(name, picture, folder.as_ref(), &report_folder(), bless) {
+    if let Err(failure) = check(name, picture, folder.as_ref(), &report_folder(), is_blessing()) {
         panic!("golden picture `{name}`: {failure}");
     }
+}
+
+/// Compares a text with the stored one at `path`, line by line; stores it where that is asked for.
+///
+/// # Panics
+/// Where there is no stored text, or a line of it is another. The message says which.
+#[track_caller]
+pub fn assert_golden_text(path: &Path, actual: &str) {
+    if is_blessing() {
+        std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+        std::fs::write(path, actual).expect("written");
+        return;
+    }
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let expected = std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    for (number, (expected, actual)) in (1..).zip(expected.lines().zip(actual.lines())) {
+        assert_eq!(actual, expected, "{name}, line {number}; `SNELL_BLESS=1` stores it anew");
+    }
+    assert_eq!(actual.lines().count(), expected.lines().count(), "{name}");
+}
+
+/// True where references are written anew.
+pub fn is_blessing() -> bool {
+    std::env::var_os("SNELL_BLESS").is_some_and(|value| value == "1")
 }
 
 /// `target/golden-report/` of this workspace.

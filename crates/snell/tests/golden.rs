@@ -17,7 +17,7 @@ use snell::math::color::srgb_to_linear;
 use snell::render::{NoProgress, PathSettings, RenderSettings, render, render_paths};
 use snell::scene::scene::IntegratorKind;
 use snell_testkit::assert_golden;
-use snell_testkit::golden::{Failure, check};
+use snell_testkit::golden::{Failure, check, is_blessing};
 
 /// Pixels from left to right of a golden picture; its height follows from the scene's own proportions.
 const WIDTH: u32 = 160;
@@ -35,7 +35,7 @@ fn main() {
         if failed.message().is_some_and(|message| message.contains("`c`")) { Ok(()) } else { Err(failed) }
     }));
     // Where references are being written, nothing is compared, and so no defect can be caught.
-    if std::env::var_os("SNELL_BLESS").is_none_or(|value| value != "1") {
+    if !is_blessing() {
         trials.push(Trial::test("a-picture-that-is-off-by-one-is-told", move || {
             let name = scenes.first().ok_or("there is no scene")?;
             let report = Path::new(env!("CARGO_TARGET_TMPDIR")).join("golden-report");

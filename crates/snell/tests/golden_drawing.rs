@@ -14,6 +14,7 @@ use libtest_mimic::{Arguments, Failed, Trial};
 use snell::compile::CompiledScene;
 use snell::drawing::{DrawingSettings, draw};
 use snell::vector::encode_svg;
+use snell_testkit::golden::is_blessing;
 
 /// Pixels from left to right of the rendering that a golden drawing agrees with, and its width in millimetres.
 const WIDTH: (u32, f64) = (320, 80.0);
@@ -42,7 +43,7 @@ fn of_scene(name: String) -> Trial {
     Trial::test(name.clone(), move || {
         let actual = drawing(&name);
         let path = folder().join(format!("{name}.svg"));
-        if std::env::var_os("SNELL_BLESS").is_some_and(|value| value == "1") {
+        if is_blessing() {
             std::fs::create_dir_all(folder()).map_err(|error| error.to_string())?;
             return std::fs::write(&path, actual).map_err(|error| format!("{}: {error}", path.display()).into());
         }

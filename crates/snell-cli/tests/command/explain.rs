@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
+use snell_testkit::golden::{assert_golden_text, is_blessing};
 use snell_testkit::must_fail;
 
 use crate::schema::problems;
@@ -20,23 +21,9 @@ fn schema() -> Value {
     serde_json::from_slice(&text).unwrap()
 }
 
-fn is_blessing() -> bool {
-    std::env::var_os("SNELL_BLESS").is_some_and(|value| value == "1")
-}
-
 /// Compares with a stored text, or stores it where that is asked for.
 fn compare(name: &str, actual: &str) {
-    let path = root().join("goldens/explanations").join(name);
-    if is_blessing() {
-        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        std::fs::write(&path, actual).unwrap();
-        return;
-    }
-    let expected = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    for (number, (expected, actual)) in (1..).zip(expected.lines().zip(actual.lines())) {
-        assert_eq!(actual, expected, "{name}, line {number}; `SNELL_BLESS=1` stores it anew");
-    }
-    assert_eq!(actual.lines().count(), expected.lines().count(), "{name}");
+    assert_golden_text(&root().join("goldens/explanations").join(name), actual);
 }
 
 #[test]

@@ -6,6 +6,7 @@ use snell::explain::{FigureSettings, Subject, View, explain, figure};
 use snell::math::Point3;
 use snell::scene::scene::Antialiasing;
 use snell::vector::{Item, Page, Piece};
+use snell_testkit::golden::{assert_golden_text, is_blessing};
 use snell_testkit::must_fail;
 
 use crate::files::{root, scene_of_file};
@@ -51,17 +52,7 @@ fn in_words(page: &Page) -> String {
 }
 
 fn compare(name: &str, actual: &str) {
-    let path = root().join("goldens/explanations").join(name);
-    if std::env::var_os("SNELL_BLESS").is_some_and(|value| value == "1") {
-        std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
-        std::fs::write(&path, actual).expect("written");
-        return;
-    }
-    let expected = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    for (number, (expected, actual)) in (1..).zip(expected.lines().zip(actual.lines())) {
-        assert_eq!(actual, expected, "{name}, line {number}; `SNELL_BLESS=1` stores it anew");
-    }
-    assert_eq!(actual.lines().count(), expected.lines().count(), "{name}");
+    assert_golden_text(&root().join("goldens/explanations").join(name), actual);
 }
 
 #[test]
@@ -75,7 +66,7 @@ fn figures_are_what_they_were() {
         compare(&format!("figure-{name}.txt"), &in_words(&page("seven-rays", [94, 120], view)));
     }
     compare("figure-shadow.txt", &in_words(&page("seven-rays", [42, 137], View::Side)));
-    if std::env::var_os("SNELL_BLESS").is_none() {
+    if !is_blessing() {
         must_fail("a ray is somewhere else", || {
             compare("figure-plane.txt", &in_words(&page("seven-rays", [94, 121], View::Plane)));
         });
