@@ -252,6 +252,14 @@ pub struct Body {
     pub film: Option<scene::Film>,
 }
 
+impl Body {
+    /// False where its boundary does nothing to light that comes from the world around: of the same index at all wavelengths, without a
+    /// film.
+    pub fn bends_light(&self) -> bool {
+        self.film.is_some() || self.ior != snell_math::Dispersion::Constant(1.0)
+    }
+}
+
 /// A colour of a material that a texture may give.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Slot {
@@ -341,9 +349,7 @@ impl Material {
 
     /// True where it mirrors or bends light, somewhere at least.
     pub fn is_specular(&self) -> bool {
-        let bends = self.body.as_ref().is_some_and(|body| {
-            body.roughness == 0.0 && (body.film.is_some() || body.ior != snell_math::Dispersion::Constant(1.0))
-        });
+        let bends = self.body.as_ref().is_some_and(|body| body.roughness == 0.0 && body.bends_light());
         if let Some(metal) = &self.metal {
             return metal.roughness == 0.0;
         }

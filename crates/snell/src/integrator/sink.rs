@@ -27,7 +27,7 @@ pub struct Rules {
 
 /// How many boundaries without effect a ray may go through before it counts as lost: a guard against scenes that are
 /// infinitely thin, not a limit that a real one meets.
-const MAX_PASSES: u16 = 4096;
+pub(super) const MAX_PASSES: u16 = 4096;
 
 /// How many queues the rays of a generation wait in: each sample's first ray in the first, its second in the second, and so on,
 /// all further ones in the last. So rays side by side belong to different samples, and what they add to them does so in the order

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use snell_math::warp::{Cone, uniform_disk};
 use snell_math::{Bounds3, Point3, Vector3};
 
-use super::lights::{LightIndex, Lights};
+use super::lights::{LightIndex, Lights, chosen, within};
 use super::spectra::{BLACK, Colors, Spectral, Wavelengths, scaled};
 use crate::compile::CompiledScene;
 use crate::light::LightOrigin;
@@ -182,18 +182,7 @@ impl Emission {
         way: [f64; 2],
         place: [f64; 2],
     ) -> Option<Emitted> {
-        let mut rest = choice;
-        let mut chosen = None;
-        for (light, &probability) in lights.all().zip(&self.probabilities) {
-            if probability > 0.0 {
-                chosen = Some((light, probability));
-                if rest < probability {
-                    break;
-                }
-            }
-            rest -= probability;
-        }
-        let (light, probability) = chosen?;
+        let (light, probability) = chosen(lights.all().zip(self.probabilities.iter().copied()), choice)?;
         match light {
             LightIndex::Point(number) => {
                 let (of_scene, spectrum) = &lights.points[number];
@@ -209,7 +198,7 @@ impl Emission {
                         (share > 0.0).then_some(Emitted { origin, direction, power, density: f64::INFINITY, light })
                     }
                     LightOrigin::Direction(to_light, angle) => {
-                        let direction = -super::lights::within(to_light, angle, place);
+                        let direction = -within(to_light, angle, place);
                         let origin = self.targets.sample_across(direction, target, way);
                         let density = probability * self.targets.density_across(origin, direction);
                         let power = scaled(spectrum, PI / density);

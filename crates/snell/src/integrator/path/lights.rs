@@ -114,11 +114,6 @@ impl Lights {
         Self { points, surfaces, environment, by_body, first_surface: scene.lights.len() as u32 }
     }
 
-    /// True where there is no light at all.
-    pub fn is_empty(&self) -> bool {
-        self.points.is_empty() && self.surfaces.is_empty() && self.environment.is_none()
-    }
-
     /// How many there are.
     fn count(&self) -> usize {
         self.points.len() + self.surfaces.len() + usize::from(self.environment.is_some())
@@ -235,19 +230,8 @@ impl Lights {
             1 => (self.index(0), 1.0),
             _ => {
                 let weights = self.weights(scene, point);
-                let mut rest = choice;
-                let mut chosen = None;
-                for index in self.all() {
-                    let probability = Self::probability(self.weight(scene, index, point), weights);
-                    if probability > 0.0 {
-                        chosen = Some((index, probability));
-                        if rest < probability {
-                            break;
-                        }
-                    }
-                    rest -= probability;
-                }
-                chosen?
+                let probability = |index| Self::probability(self.weight(scene, index, point), weights);
+                chosen(self.all().map(|index| (index, probability(index))), choice)?
             }
         };
         let arriving = self.arriving(scene, colors, wavelengths, index, point, u)?;
@@ -347,4 +331,20 @@ pub fn within(to_light: Vector3, angle: f64, u: [f64; 2]) -> Vector3 {
     // 1 − cos of half the angle.
     let half = portable::sin(0.25 * angle);
     Cone::new(to_light, 2.0 * half * half).sample(u)
+}
+
+/// One of some lights, by their probabilities and a number in [0, 1), with its own; `None` where none has any.
+pub fn chosen(lights: impl Iterator<Item = (LightIndex, f64)>, choice: f64) -> Option<(LightIndex, f64)> {
+    let mut rest = choice;
+    let mut chosen = None;
+    for (light, probability) in lights {
+        if probability > 0.0 {
+            chosen = Some((light, probability));
+            if rest < probability {
+                break;
+            }
+        }
+        rest -= probability;
+    }
+    chosen
 }

@@ -241,9 +241,7 @@ impl<'a> Lobes<'a> {
         let [diffuse, highlight, rough, mirror, reflected, refracted] = self.shares;
         if lobe < diffuse + highlight + rough {
             let wi = if lobe < diffuse {
-                let (x, y) = self.normal.orthonormal_basis();
-                let local = cosine_hemisphere(u);
-                x * local.x() + y * local.y() + self.normal * local.z()
+                about(self.normal, cosine_hemisphere(u))
             } else if lobe < diffuse + highlight {
                 self.sample_highlight(u)
             } else {
@@ -289,8 +287,7 @@ impl<'a> Lobes<'a> {
         let cosine = portable::pow(1.0 - u, 1.0 / (self.shininess + 1.0));
         let sine = ((1.0 - cosine) * (1.0 + cosine)).max(0.0).sqrt();
         let angle = 2.0 * PI * v;
-        let (x, y) = mirrored.orthonormal_basis();
-        x * (sine * portable::cos(angle)) + y * (sine * portable::sin(angle)) + mirrored * cosine
+        about(mirrored, Vector3::new(sine * portable::cos(angle), sine * portable::sin(angle), cosine))
     }
 
     fn reflect(&self, color: Spectral, share: f64) -> Option<Scattered> {
@@ -316,4 +313,11 @@ impl<'a> Lobes<'a> {
         let weight = scaled(self.refracted, factor / self.shares[5]);
         Some(Scattered { wi, weight, density: None, crosses: true, hero_alone: self.disperses, compression })
     }
+}
+
+/// A direction that is given about +z, about another axis of unit length.
+#[inline]
+pub fn about(axis: Vector3, local: Vector3) -> Vector3 {
+    let (x, y) = axis.orthonormal_basis();
+    x * local.x() + y * local.y() + axis * local.z()
 }

@@ -1,18 +1,20 @@
 //! The scene's materials, ready for wavelengths.
 
-use snell_math::Dispersion;
 use snell_math::dispersion::fraunhofer::SODIUM_D;
 use snell_math::microfacet::{ConductorCompensation, DielectricCompensation, Ggx};
+use snell_math::{Dispersion, Ray};
 use snell_scene::scene::Film;
 
 use super::lobes::{BoundaryColors, SurfaceColors};
-use super::reflector::{Reflector, is_index_of_air};
+use super::reflector::Reflector;
 use super::rough::{Rough, RoughKind};
 use super::spectra::{BodySpectra, Colors, Reflectance, Spectral, WHITE};
 use crate::compile::CompiledScene;
+use crate::geometry::Geometry;
+use crate::interaction::SurfaceInteraction;
 use crate::material::{Bsdf, Material};
 use crate::optics::{Metal, fresnel_dielectric};
-use crate::task::Inside;
+use crate::task::{Crossing, Inside, MediumStack, MediumStacks};
 
 /// With at most so many other bodies a rough one has tables of its own for what bounces on its surface more than once.
 const MOST_NEIGHBOURS: usize = 8;
@@ -44,6 +46,20 @@ struct RoughBoundary {
     ggx: Ggx,
     /// By what is on the other side: a material, or nothing.
     compensations: Vec<(Option<u32>, DielectricCompensation)>,
+}
+
+/// What the boundary of a body is to light that comes to it.
+#[derive(Clone, Copy, Debug)]
+pub enum Boundary {
+    /// Light goes straight on: where another body covers it, or nothing is bent.
+    Passed {
+        /// The share that goes on.
+        share: Spectral,
+        /// The bodies behind it.
+        media: MediumStack,
+    },
+    /// Light is reflected and refracted.
+    Met(Crossing),
 }
 
 /// Where and how a path meets a surface.
@@ -101,8 +117,31 @@ impl PathMaterials {
         self.some_pass
     }
 
+    /// What light of a ray in some bodies meets at a surface; `None` where the surface is no body's.
+    pub fn boundary(
+        &self,
+        scene: &CompiledScene,
+        stacks: &mut MediumStacks,
+        media: MediumStack,
+        ray: &Ray,
+        interaction: &SurfaceInteraction,
+        nm: Spectral,
+    ) -> Option<Boundary> {
+        let SurfaceInteraction { material, solid, t, .. } = *interaction;
+        let priority = scene.materials[material as usize].body.as_ref()?.priority;
+        let leaving = interaction.is_outward(ray.direction);
+        let inside = Inside { solid, material, priority };
+        let crossing = stacks.cross(media, inside, leaving, Geometry::is_at_origin(ray, t));
+        let share = if crossing.is_without_effect() {
+            Some(WHITE)
+        } else {
+            self.straight(material, [crossing.before, crossing.beyond], nm)
+        };
+        Some(share.map_or(Boundary::Met(crossing), |share| Boundary::Passed { share, media: crossing.after }))
+    }
+
     /// What the boundary of a material between two bodies lets through straight on; `None` where it bends light.
-    pub fn straight(&self, material: u32, sides: [Option<Inside>; 2], nm: Spectral) -> Option<Spectral> {
+    fn straight(&self, material: u32, sides: [Option<Inside>; 2], nm: Spectral) -> Option<Spectral> {
         let clear = self.materials[material as usize].clear?;
         let [before, beyond] = self.indices(sides, nm);
         (before == beyond).then(|| clear.at(nm))
@@ -199,7 +238,7 @@ fn rough_boundary(number: u32, material: &Material, indices: &[Dispersion], bodi
 /// What a boundary lets through that does nothing else.
 fn clear(material: &Material) -> Option<Reflectance> {
     let bsdf = material.constant_bsdf()?;
-    material.body.as_ref().filter(|body| body.film.is_none() && is_index_of_air(&body.ior))?;
+    material.body.as_ref().filter(|body| !body.bends_light())?;
     let does_nothing_else = !bsdf.is_lit() && bsdf.mirror.is_black() && bsdf.emission.is_black();
     let interface = bsdf.interface.filter(|interface| interface.fresnel && does_nothing_else)?;
     Some(Reflectance::new(interface.transmit))

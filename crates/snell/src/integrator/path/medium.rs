@@ -3,20 +3,19 @@
 //! Distances in media that scatter are chosen by the extinction of one of the path's wavelengths, each as likely as the others, and weighed
 //! by the mean of all densities: Wilkie et al. 2014, section 4. Phase functions are Henyey and Greenstein's.
 
+use snell_math::Ray;
 use snell_math::warp::{exponential, henyey_greenstein, henyey_greenstein_density};
-use snell_math::{Ray, Vector3};
 
 use super::lights::Arriving;
+use super::lobes::about;
+use super::materials::Boundary;
 use super::sample::{Purpose, Vertex};
-use super::spectra::{Spectral, attenuated, is_black, mean, plus, scaled, times};
+use super::spectra::{BLACK, Spectral, WHITE, attenuated, is_black, mean, plus, scaled, times};
 use super::{Path, Step};
-use crate::geometry::{Geometry, QueryScratch};
-use crate::interaction::LaneSurface;
+use crate::geometry::QueryScratch;
+use crate::integrator::sink::MAX_PASSES;
 use crate::observe::Observer;
-use crate::task::{Inside, MediumStack, RayKind, Term};
-
-/// How many boundaries that do not bend light a shadow ray goes through at most.
-const MAX_PASSES: u32 = 4096;
+use crate::task::{MediumStack, RayKind, Term};
 
 /// A straight way to a light.
 #[derive(Clone, Copy, Debug)]
@@ -77,9 +76,7 @@ impl Path {
             let way = WayToLight { ray, distance: arriving.distance, media: step.task.media };
             self.ask(step, &arriving, way, value, term);
         }
-        let local = henyey_greenstein(u, anisotropy);
-        let (x, y) = forward.orthonormal_basis();
-        let wi: Vector3 = (x * local.x() + y * local.y() + forward * local.z()).normalize();
+        let wi = about(forward, henyey_greenstein(u, anisotropy)).normalize();
         let density = henyey_greenstein_density(forward.dot(wi), anisotropy);
         step.path.scattered = Some(Vertex { point, density, cosine: 1.0, gathers: false });
         step.path.specular = 0;
@@ -139,7 +136,7 @@ impl Path {
     fn way_to_light<O: Observer>(&self, step: &mut Step<'_, '_, '_, O>, way: WayToLight) -> Spectral {
         let WayToLight { mut ray, mut distance, mut media } = way;
         let nm = step.path.wavelengths.nm();
-        let mut left = super::spectra::WHITE;
+        let mut left = WHITE;
         let mut scratch = QueryScratch::default();
         for _ in 0..MAX_PASSES {
             let hit = step.scene.geometry.intersect(&ray, distance, &mut scratch);
@@ -151,25 +148,17 @@ impl Path {
             }
             let Some(hit) = hit else { return left };
             let interaction = step.scene.geometry.interaction(&ray, &hit);
-            let number = interaction.material;
-            let Some(body) = &step.scene.materials[number as usize].body else { return super::spectra::BLACK };
-            let leaving = interaction.is_outward(ray.direction);
-            let inside = Inside { solid: interaction.solid, material: number, priority: body.priority };
-            let at_origin = Geometry::is_at_origin(&ray, hit.t);
-            let crossing = step.out.media.cross(media, inside, leaving, at_origin);
-            if !crossing.is_without_effect() {
-                // A boundary that bends nothing.
-                match self.materials.straight(number, [crossing.before, crossing.beyond], nm) {
-                    Some(share) => left = times(left, share),
-                    None => return super::spectra::BLACK,
-                }
-            }
-            media = crossing.after;
-            let origin: snell_math::Point3 =
-                LaneSurface::<f64>::from(&interaction).spawn_origin(ray.direction.into()).into();
-            distance -= (origin - ray.origin).dot(ray.direction);
-            ray = Ray::new(origin, ray.direction);
+            let Some(Boundary::Passed { share, media: behind }) =
+                self.materials.boundary(step.scene, step.out.media, media, &ray, &interaction, nm)
+            else {
+                return BLACK;
+            };
+            left = times(left, share);
+            media = behind;
+            let onward = interaction.spawn_ray(ray.direction);
+            distance -= (onward.origin - ray.origin).dot(ray.direction);
+            ray = onward;
         }
-        super::spectra::BLACK
+        BLACK
     }
 }

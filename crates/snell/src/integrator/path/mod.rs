@@ -29,14 +29,14 @@ use super::{Integrator, Sink, view_of};
 use crate::camera::{Camera, Projection, Window};
 use crate::compile::CompiledScene;
 use crate::geometry::{HitRows, WorldSurface};
-use crate::interaction::{LaneSurface, SurfaceInteraction, SurfaceRows};
+use crate::interaction::{SurfaceInteraction, SurfaceRows};
 use crate::material::Material;
 use crate::observe::Observer;
-use crate::task::{Crossing, Cut, Inside, MediumStack, RayKind, RayRows, RayTask, ShadowQuestion, Term};
+use crate::task::{Crossing, Cut, MediumStack, RayKind, RayRows, RayTask, ShadowQuestion, Term};
 use emission::{Emission, Targets};
 use lights::Lights;
 use lobes::{Lobes, Transport};
-use materials::{Meeting, PathMaterials};
+use materials::{Boundary, Meeting, PathMaterials};
 use medium::WayToLight;
 pub use photons::{PhotonMap, PhotonPasses};
 use sample::Vertex;
@@ -46,8 +46,6 @@ use spectra::{Colors, Spectral, largest, scaled, times};
 
 /// From this depth on paths end by chance, the likelier the less they carry.
 const ROULETTE_DEPTH: u16 = 4;
-/// How many specular surfaces a photon meets at most: as many as a path of the default depth.
-const PHOTON_DEPTH: u32 = 63;
 
 /// Path tracing.
 #[derive(Debug)]
@@ -60,8 +58,6 @@ pub struct Path {
     emission: Option<Emission>,
     /// The photons of the pass.
     photons: Option<PhotonMap>,
-    /// The most specular surfaces that a photon meets.
-    depth: u32,
 }
 
 impl Path {
@@ -72,12 +68,7 @@ impl Path {
         let emission = targets(scene).and_then(|targets| Emission::new(scene, &lights, targets));
         let materials = PathMaterials::new(scene);
         let (camera, colors) = (camera.clone(), Colors::new());
-        Self { camera, colors, materials, lights, emission, photons: None, depth: PHOTON_DEPTH }
-    }
-
-    /// True where nothing in the scene gives off light.
-    pub fn is_dark(&self) -> bool {
-        self.lights.is_empty()
+        Self { camera, colors, materials, lights, emission, photons: None }
     }
 
     /// The passes of photons for a picture of so many pixels, under a seed; `None` where they would bring nothing.
@@ -222,36 +213,26 @@ impl Path {
         let number = interaction.material;
         let material = &step.scene.materials[number as usize];
         let wo = -step.task.ray.direction;
-        let mut crossing = None;
-        if let Some(body) = &material.body {
-            let leaving = interaction.is_outward(step.task.ray.direction);
-            let at_origin = crate::geometry::Geometry::is_at_origin(&step.task.ray, interaction.t);
-            let inside = Inside { solid: interaction.solid, material: number, priority: body.priority };
-            let met = step.out.media.cross(step.task.media, inside, leaving, at_origin);
-            let nm = step.path.wavelengths.nm();
-            let straight = if met.is_without_effect() {
-                Some(spectra::WHITE)
-            } else {
-                self.materials.straight(number, [met.before, met.beyond], nm)
-            };
-            if let Some(share) = straight {
+        let nm = step.path.wavelengths.nm();
+        let RayTask { ray, media, .. } = step.task;
+        let crossing = match self.materials.boundary(step.scene, step.out.media, media, &ray, interaction, nm) {
+            None => None,
+            Some(Boundary::Met(crossing)) => Some(crossing),
+            Some(Boundary::Passed { share, media }) => {
                 step.path.throughput = times(step.path.throughput, share);
-                let origin = LaneSurface::<f64>::from(interaction).spawn_origin(step.task.ray.direction.into());
-                let ray = Ray::new(origin.into(), step.task.ray.direction);
-                step.out.pass(&step.task, ray, met.after);
+                step.out.pass(&step.task, interaction.spawn_ray(ray.direction), media);
                 return;
             }
-            crossing = Some(met);
-        }
+        };
         let bsdf = material.bsdf(&step.scene.textures, interaction);
         if !bsdf.emission.is_black() && (!bsdf.one_sided || interaction.is_outward(wo)) {
             self.find_light(step, interaction, bsdf.emission);
         }
         let meeting = Meeting {
             sides: crossing.map(|Crossing { before, beyond, .. }| [before, beyond]),
-            around: step.out.media.current(step.task.media),
+            around: step.out.media.current(media),
             is_tinted: interaction.vertex_color.is_some(),
-            nm: step.path.wavelengths.nm(),
+            nm,
             hero_alone: step.path.wavelengths.is_hero_alone(),
         };
         let colors = self.materials.colors(&self.colors, number, &bsdf, &meeting);
@@ -321,14 +302,13 @@ impl Path {
         }
         let weight = arriving.density.map_or(1.0, |asked| asked / (asked + density));
         let value = scaled(value, weight);
-        let origin = LaneSurface::<f64>::from(interaction).spawn_origin(arriving.wi.into());
-        let from = Ray::new(origin.into(), arriving.wi);
-        let distance = arriving.distance - (from.origin - point).dot(arriving.wi);
+        let ray = interaction.spawn_ray(arriving.wi);
+        let distance = arriving.distance - (ray.origin - point).dot(arriving.wi);
         let media = match crossing {
             Some(crossing) if lobes.flat_cosine(arriving.wi) < 0.0 => crossing.after,
             _ => step.task.media,
         };
-        let way = WayToLight { ray: from, distance, media };
+        let way = WayToLight { ray, distance, media };
         self.ask(step, &arriving, way, value, Term::Diffuse(self.lights.name(arriving.light)));
     }
 
@@ -361,8 +341,7 @@ impl Path {
             _ if scattered.density.is_some() => (RayKind::Scattered, step.task.media),
             _ => (RayKind::Reflected, step.task.media),
         };
-        let origin = LaneSurface::<f64>::from(interaction).spawn_origin(scattered.wi.into());
-        step.spawn(kind, Ray::new(origin.into(), scattered.wi), media, roulette);
+        step.spawn(kind, interaction.spawn_ray(scattered.wi), media, roulette);
     }
 }
 

@@ -18,14 +18,14 @@ use snell_math::{Point3, Ray, Vector3};
 use super::emission::{Emission, Emitted};
 use super::lights::LightIndex;
 use super::lobes::{Lobes, Transport};
-use super::materials::Meeting;
-use super::spectra::{BLACK, Spectral, WHITE, Wavelengths, is_black, largest, mean, plus, scaled, times};
+use super::materials::{Boundary, Meeting};
+use super::spectra::{BLACK, Spectral, Wavelengths, attenuated, is_black, largest, mean, plus, scaled, times};
 use super::{Path, ROULETTE_DEPTH};
 use crate::compile::CompiledScene;
-use crate::geometry::{Geometry, QueryScratch};
-use crate::interaction::{LaneSurface, SurfaceInteraction};
-use crate::material::Material;
-use crate::task::{Inside, MediumStack, MediumStacks};
+use crate::geometry::QueryScratch;
+use crate::integrator::sink::MAX_PASSES;
+use crate::interaction::SurfaceInteraction;
+use crate::task::{MediumStack, MediumStacks};
 
 /// What of r² is left after k passes is a product of (i + α) / (i + 1).
 const ALPHA: f64 = 2.0 / 3.0;
@@ -33,8 +33,8 @@ const ALPHA: f64 = 2.0 / 3.0;
 const FIRST_RADIUS: f64 = 2.5;
 /// Photons that one thread follows at a time.
 const PORTION: u32 = 4096;
-/// Boundaries without effect that a photon goes through at most.
-const MAX_PASSES: u32 = 4096;
+/// How many specular surfaces a photon meets at most: as many as a path of the default depth.
+const PHOTON_DEPTH: u32 = 63;
 
 /// A photon where it fell.
 #[derive(Clone, Copy, Debug)]
@@ -164,8 +164,8 @@ impl Pass<'_> {
             travelled: 0.0,
             wavelengths: self.wavelengths,
         };
-        let (mut events, mut passes) = (0_u32, 0_u32);
-        while events < self.path.depth && passes < MAX_PASSES {
+        let (mut events, mut passes) = (0_u32, 0_u16);
+        while events < PHOTON_DEPTH && passes < MAX_PASSES {
             let Some(hit) = self.scene.geometry.intersect(&photon.ray, f64::INFINITY, &mut buffers.query) else {
                 return;
             };
@@ -174,33 +174,30 @@ impl Pass<'_> {
             if !photon.travel(self.path, hit.t, draw[3], &buffers.media) {
                 return;
             }
+            let materials = &self.path.materials;
+            let (nm, media) = (photon.wavelengths.nm(), photon.media);
+            let crossing =
+                match materials.boundary(self.scene, &mut buffers.media, media, &photon.ray, &interaction, nm) {
+                    None => None,
+                    Some(Boundary::Met(crossing)) => Some(crossing),
+                    Some(Boundary::Passed { share, media }) => {
+                        photon.power = times(photon.power, share);
+                        photon.go_on(&interaction, photon.ray.direction, media);
+                        passes += 1;
+                        continue;
+                    }
+                };
             let number = interaction.material;
-            let material: &Material = &self.scene.materials[number as usize];
-            let mut crossing = None;
-            if let Some(body) = &material.body {
-                let leaving = interaction.is_outward(photon.ray.direction);
-                let at_origin = Geometry::is_at_origin(&photon.ray, hit.t);
-                let inside = Inside { solid: interaction.solid, material: number, priority: body.priority };
-                let met = buffers.media.cross(photon.media, inside, leaving, at_origin);
-                let nm = photon.wavelengths.nm();
-                let straight = self.path.materials.straight(number, [met.before, met.beyond], nm);
-                if met.is_without_effect() || straight.is_some() {
-                    photon.power = times(photon.power, straight.filter(|_| !met.is_without_effect()).unwrap_or(WHITE));
-                    photon.go_on(&interaction, photon.ray.direction, met.after);
-                    passes += 1;
-                    continue;
-                }
-                crossing = Some(met);
-            }
+            let material = &self.scene.materials[number as usize];
             let bsdf = material.bsdf(&self.scene.textures, &interaction);
             let meeting = Meeting {
                 sides: crossing.map(|crossing| [crossing.before, crossing.beyond]),
-                around: buffers.media.current(photon.media),
+                around: buffers.media.current(media),
                 is_tinted: interaction.vertex_color.is_some(),
-                nm: photon.wavelengths.nm(),
+                nm,
                 hero_alone: photon.wavelengths.is_hero_alone(),
             };
-            let surface = self.path.materials.colors(colors, number, &bsdf, &meeting);
+            let surface = materials.colors(colors, number, &bsdf, &meeting);
             let wo = -photon.ray.direction;
             let lobes = Lobes::new(&surface, &interaction, wo);
             if events > 0 && lobes.is_lit() {
@@ -221,7 +218,7 @@ impl Pass<'_> {
             }
             if events >= u32::from(ROULETTE_DEPTH) {
                 let survival = (largest(photon.power) / largest(power)).min(1.0);
-                if sampler.set(2 + events + self.path.depth)[0] >= survival {
+                if sampler.set(2 + events + PHOTON_DEPTH)[0] >= survival {
                     return;
                 }
                 photon.power = scaled(photon.power, 1.0 / survival);
@@ -260,7 +257,7 @@ impl Flight {
         let Some(inside) = media.current(self.media) else { return true };
         let Some(body) = path.materials.body(inside.material) else { return true };
         let [absorption, scattering] = body.at(self.wavelengths.nm());
-        let left = plus(absorption, scattering).map(|extinction| super::spectra::attenuated(extinction, distance));
+        let left = plus(absorption, scattering).map(|extinction| attenuated(extinction, distance));
         self.power = times(self.power, left);
         if is_black(scattering) {
             return true;
@@ -281,8 +278,7 @@ impl Flight {
     }
 
     fn go_on(&mut self, interaction: &SurfaceInteraction, direction: Vector3, media: MediumStack) {
-        let origin = LaneSurface::<f64>::from(interaction).spawn_origin(direction.into());
-        self.ray = Ray::new(origin.into(), direction);
+        self.ray = interaction.spawn_ray(direction);
         self.media = media;
     }
 

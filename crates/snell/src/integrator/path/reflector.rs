@@ -1,6 +1,5 @@
 //! How much of light a boundary reflects, by wavelength and angle: glass, metals, and thin films on both.
 
-use snell_math::Dispersion;
 use snell_math::spectrum::HERO_WAVELENGTHS;
 use snell_scene::scene;
 
@@ -81,9 +80,4 @@ impl Reflector {
 
 fn film_at(film: &scene::Film, nm: Spectral) -> [ThinFilm; HERO_WAVELENGTHS] {
     nm.map(|nm| ThinFilm { index: film.ior.index(nm).into(), thickness_nm: film.thickness_nm })
-}
-
-/// True for a body whose index is that of the world around, at all wavelengths.
-pub fn is_index_of_air(index: &Dispersion) -> bool {
-    *index == Dispersion::Constant(1.0)
 }

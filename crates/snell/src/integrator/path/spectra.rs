@@ -3,6 +3,8 @@
 //! A colour that is the same everywhere becomes a smooth spectrum once, when the integrator is made; one of a texture is a mixture
 //! of those of a lattice, at each hit. See [`snell_math::spectrum`].
 
+use std::sync::LazyLock;
+
 use snell_math::spectrum::{HERO_WAVELENGTHS, HeroWavelengths, SmoothLattice, SmoothReflectance};
 use snell_math::{Rgb, portable};
 use snell_scene::scene::Medium;
@@ -86,15 +88,16 @@ fn gray(color: Rgb) -> Option<f64> {
 }
 
 /// The colours of textures at wavelengths.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Colors {
-    lattice: SmoothLattice,
+    /// Milliseconds of work, which a scene of constant colours need not wait for.
+    lattice: LazyLock<SmoothLattice>,
 }
 
 impl Colors {
-    /// Finds the spectra of the lattice.
+    /// The spectra of the lattice are found when they are first asked for.
     pub fn new() -> Self {
-        Self { lattice: SmoothLattice::new() }
+        Self { lattice: LazyLock::new(SmoothLattice::new) }
     }
 
     /// A reflectance in [0, 1] at wavelengths in nanometres.
