@@ -15,6 +15,7 @@ mod interrupt;
 mod load;
 mod map;
 mod output;
+mod paths;
 mod preview;
 mod progress;
 mod render;

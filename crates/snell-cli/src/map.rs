@@ -3,11 +3,10 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use snell::compile::CompiledScene;
 use snell::explain::{MapError, PROPERTIES, Property, false_colors, map};
 use snell::image::{ExrOptions, Layers, PngOptions, encode_exr, encode_png};
 use snell::math::Rgb;
-use snell::render::{Progress, RenderSettings};
+use snell::render::{Progress, Watch};
 use snell::scene::Diagnostic;
 use snell::scene::diagnostic::did_you_mean;
 
@@ -37,26 +36,25 @@ pub fn property(name: &str) -> Result<Property, Failure> {
 
 /// Makes the map and writes it: in false colours with their bar as a PNG, as plain numbers in all three components of an EXR.
 pub fn render(
-    scene: &CompiledScene,
-    settings: &RenderSettings,
+    watch: &mut Watch<'_>,
     property: &Property,
     target: &Target,
     progress: &dyn Progress,
 ) -> Result<(), Failure> {
     let failed = |error: &dyn std::fmt::Display| Failure::input(Diagnostic::error(error.to_string()));
-    let values = map(scene, settings, property, progress).map_err(|error| {
+    let values = map(watch, property, progress).map_err(|error| {
         let diagnostic = Diagnostic::error(error.to_string());
         let near = match &error {
             MapError::NoObject(name) => {
-                let names = &scene.object_names;
+                let names = &watch.scene.object_names;
                 let all: Vec<String> =
                     (0..names.len() as u32).filter_map(|number| Some(names.get(number)?.into_owned())).collect();
                 did_you_mean(name, all.iter().map(String::as_str)).map(str::to_owned)
             }
             MapError::NoLight(name) => {
-                did_you_mean(name, scene.light_names.iter().map(String::as_str)).map(str::to_owned)
+                did_you_mean(name, watch.light_names().iter().map(String::as_str)).map(str::to_owned)
             }
-            MapError::Unknown(_) | MapError::Viewing(_) => None,
+            MapError::Unknown(_) => None,
         };
         Failure::input(match near {
             Some(near) => diagnostic.help(format!("did you mean {}?", quoted(&near))),

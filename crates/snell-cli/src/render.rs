@@ -5,11 +5,10 @@ use std::time::Duration;
 use snell::compile::CompiledScene;
 use snell::render::{PathSettings, RenderSettings, Rendering, render, render_paths};
 use snell::scene::reader::nff;
-use snell::scene::scene::IntegratorKind;
 use snell::scene::{Diagnostic, Diagnostics, Scene};
 use snell::statistics::SamplePlace;
 
-use crate::arguments::{IntegratorName, PathArguments, PictureArguments, Preset, RenderArguments, word};
+use crate::arguments::{PictureArguments, Preset, RenderArguments, StopArguments, word};
 use crate::assets::FileAssets;
 use crate::builtin;
 use crate::console::{quoted, say, write_stdout};
@@ -19,6 +18,7 @@ use crate::interrupt::Interrupt;
 use crate::load::Place;
 use crate::map;
 use crate::output::Target;
+use crate::paths;
 use crate::preview::{self, Kind};
 use crate::progress::RenderProgress;
 use crate::settings;
@@ -36,6 +36,11 @@ pub fn run(arguments: &RenderArguments, mut watch: Stopwatch) -> Result<u8, Fail
     // All that can be refused is refused before the work.
     let property = arguments.map.as_deref().map(map::property).transpose()?;
     let place = Place::find(arguments.scene.as_deref().unwrap_or(builtin::DEFAULT))?;
+    let flags = [("--noise", arguments.stop.noise.is_some()), ("--time", arguments.stop.time.is_some())];
+    if let (Some(_), Some((flag, _))) = (&property, flags.iter().find(|(_, is_given)| *is_given)) {
+        let message = format!("{flag} ends pictures, not maps");
+        return Err(Failure::usage(Diagnostic::error(message).help("say --samples N")));
+    }
     let target = Target::new(arguments, &place.stem())?;
     let preview = if arguments.preview { Some(Kind::of_stdout()?) } else { None };
     target.check()?;
@@ -48,16 +53,18 @@ pub fn run(arguments: &RenderArguments, mut watch: Stopwatch) -> Result<u8, Fail
 
     let compiled = compile(&scene, &mut told)?;
     let settings = render_settings(arguments, &scene);
-    let paths = path_settings(arguments, &scene)?;
+    let paths = paths::settings(&arguments.paths, &arguments.picture, &scene, &flags)?;
+    let paths = paths.map(|paths| until(paths, arguments));
     drop(scene);
     diagnostics::print(&told);
     let build = watch.lap();
 
     let interrupt = Interrupt::listen()
         .map_err(|error| Failure::input(Diagnostic::error(format!("signals cannot be listened to: {error}"))))?;
-    let progress = RenderProgress::start(interrupt.clone(), !arguments.quiet, arguments.paths.time);
+    let progress = RenderProgress::start(interrupt.clone(), !arguments.quiet, arguments.stop.time);
     if let Some(property) = &property {
-        map::render(&compiled, &settings, property, &target, &progress)?;
+        let mut watched = paths::watch(&compiled, &settings, paths.as_ref())?;
+        map::render(&mut watched, property, &target, &progress)?;
         drop(progress);
         if let (Some(name), false) = (target.name(), arguments.quiet) {
             say(format_args!("wrote {name} ({}, {})", property.title(), seconds_text(watch.total())));
@@ -109,8 +116,8 @@ pub fn run(arguments: &RenderArguments, mut watch: Stopwatch) -> Result<u8, Fail
 /// The command that explains the first sample that is no number.
 fn replay(arguments: &RenderArguments, place: &Place, rendering: &Rendering) -> String {
     let Some(SamplePlace { x, y, sample }) = rendering.statistics.first_nonfinite else { return String::new() };
-    let words = arguments.picture.words();
-    format!("snell explain {} --pixel {x},{y} --sample {sample}{words}", word(place.name()))
+    let (words, of_paths) = (arguments.picture.words(), arguments.paths.words());
+    format!("snell explain {} --pixel {x},{y} --sample {sample}{words}{of_paths}", word(place.name()))
 }
 
 /// One pool for all that runs in parallel, where a number of threads is asked for; else it is made when first needed.
@@ -158,53 +165,11 @@ fn render_settings(arguments: &RenderArguments, scene: &Scene) -> RenderSettings
     RenderSettings { tile_size: arguments.tile.unwrap_or(defaults.tile_size), layers: arguments.layers, ..defaults }
 }
 
-/// How paths are traced; `None` where they are not.
-fn path_settings(arguments: &RenderArguments, scene: &Scene) -> Result<Option<PathSettings>, Failure> {
-    let PathArguments { integrator, samples, noise, time, seed, no_photons } = &arguments.paths;
-    let of_scene = scene.settings.integrator == IntegratorKind::Path;
-    if !integrator.map_or(of_scene, |name| name == IntegratorName::Path) {
-        let flags = [
-            ("--samples", samples.is_some()),
-            ("--noise", noise.is_some()),
-            ("--time", time.is_some()),
-            ("--seed", seed.is_some()),
-            ("--no-photons", *no_photons),
-        ];
-        return match flags.into_iter().find(|(_, is_given)| *is_given) {
-            None => Ok(None),
-            Some((flag, _)) => {
-                let message = format!("{flag} is for path tracing, and this picture is rendered by `whitted`");
-                Err(Failure::usage(Diagnostic::error(message).help("add --integrator path, or leave it out")))
-            }
-        };
-    }
-    let PictureArguments { aa, min_weight, shadows, bands, wavelength, .. } = &arguments.picture;
-    let flags = [
-        ("--aa", aa.is_some()),
-        ("--min-weight", min_weight.is_some()),
-        ("--shadows", shadows.is_some()),
-        ("--bands", bands.is_some()),
-        ("--wavelength", wavelength.is_some()),
-        ("--map", arguments.map.is_some()),
-    ];
-    if let Some((flag, _)) = flags.into_iter().find(|(_, is_given)| *is_given) {
-        let message = format!("{flag} is for `whitted`, and the paths of this picture are traced");
-        let help = if flag == "--aa" {
-            "use --samples, or --integrator whitted"
-        } else {
-            "leave it out, or use --integrator whitted"
-        };
-        return Err(Failure::usage(Diagnostic::error(message).help(help)));
-    }
-    let defaults = PathSettings { samples: scene.settings.samples, ..PathSettings::default() };
-    let without_end = if noise.is_some() || time.is_some() { MOST_SAMPLES } else { defaults.samples };
-    Ok(Some(PathSettings {
-        samples: samples.unwrap_or(without_end),
-        noise: *noise,
-        photons: !no_photons,
-        depth: arguments.picture.depth.and_then(|depth| u16::try_from(depth).ok()).unwrap_or(defaults.depth),
-        seed: seed.unwrap_or(defaults.seed),
-    }))
+/// Samples without end where something else is to end them.
+fn until(paths: PathSettings, arguments: &RenderArguments) -> PathSettings {
+    let StopArguments { noise, time } = arguments.stop;
+    let has_end = arguments.paths.samples.is_some() || (noise.is_none() && time.is_none());
+    PathSettings { noise, samples: if has_end { paths.samples } else { MOST_SAMPLES }, ..paths }
 }
 
 /// How a picture is rendered, from a scene that [`read`] gave.

@@ -10,7 +10,8 @@ use crate::interaction::SurfaceInteraction;
 use crate::material::Bsdf;
 use crate::task::{Band, Cut, Inside, RayKind, RayTask, ShadowQuestion, Term};
 
-/// Sees everything the tracing loop does, in order. All methods do nothing by default.
+/// Sees everything the tracing loop does, in order: ray after ray where it wants [details](Self::DETAILS), else rays of several samples side
+/// by side; what concerns one sample is in the same order. All methods do nothing by default.
 pub trait Observer {
     /// False where nothing is seen, so that what would only be seen need not be computed.
     const WATCHES: bool = true;
@@ -29,6 +30,14 @@ pub trait Observer {
     fn travelled(&mut self, task: u32, transmittance: Rgb) {
         let _ = (task, transmittance);
     }
+    /// The wavelengths that a path's ray carries, in nanometres: its hero first, which decides where it goes.
+    fn wavelengths(&mut self, task: u32, nm: &[f64]) {
+        let _ = (task, nm);
+    }
+    /// A medium scattered the light of a ray at a distance, before it came to what it met.
+    fn scattered(&mut self, task: u32, distance: f64) {
+        let _ = (task, distance);
+    }
     /// What the surface that a ray met does with light there.
     fn surface(&mut self, task: u32, bsdf: &Bsdf) {
         let _ = (task, bsdf);
@@ -40,6 +49,10 @@ pub trait Observer {
     /// A term was added to a sample: the share has the ray's throughput in it. One that a light adds follows its shadow question.
     fn term(&mut self, task: u32, term: Term, share: Rgb) {
         let _ = (task, term, share);
+    }
+    /// A surface on a shadow ray's way let some of the light through that a term would add; the answer to its question follows, with others.
+    fn filtered(&mut self, task: u32, term: Term) {
+        let _ = (task, term);
     }
     /// A shadow ray came to a surface, or after the last one to its light; the answer to its question follows.
     fn shadow_step(&mut self, step: &ShadowStep) {
@@ -72,7 +85,7 @@ impl Observer for NoObserver {
 pub struct BoundaryCrossing {
     /// The bodies before the boundary and beyond it; outside of all where `None`.
     pub media: [Option<Inside>; 2],
-    /// Their indices of refraction, in the band.
+    /// Their indices of refraction, in the band; at the hero of a path.
     pub indices: [f64; 2],
     /// The band of white light that this is about, where it splits here or was split before.
     pub band: Option<Band>,
@@ -140,6 +153,10 @@ pub struct TracedRay {
     pub medium: Option<Inside>,
     /// What that body left of its light.
     pub transmittance: Rgb,
+    /// The wavelengths that it carries, in nanometres, the hero first; none where it carries all light, or a band.
+    pub wavelengths: Vec<f64>,
+    /// How far it went until that body scattered its light.
+    pub scattered: Option<f64>,
     /// What the surface does with light; `None` where it met none, or one without effect.
     pub bsdf: Option<Bsdf>,
     /// The boundary that it met, of each band.
@@ -202,6 +219,8 @@ impl Observer for RayTree {
             hit: None,
             medium: None,
             transmittance: Rgb::WHITE,
+            wavelengths: Vec::new(),
+            scattered: None,
             bsdf: None,
             boundaries: Vec::new(),
             shadows: Vec::new(),
@@ -218,6 +237,16 @@ impl Observer for RayTree {
     fn travelled(&mut self, task: u32, transmittance: Rgb) {
         if let Some(entry) = self.entry(task) {
             entry.transmittance = transmittance;
+        }
+    }
+    fn wavelengths(&mut self, task: u32, nm: &[f64]) {
+        if let Some(entry) = self.entry(task) {
+            entry.wavelengths = nm.to_vec();
+        }
+    }
+    fn scattered(&mut self, task: u32, distance: f64) {
+        if let Some(entry) = self.entry(task) {
+            entry.scattered = Some(distance);
         }
     }
     fn surface(&mut self, task: u32, bsdf: &Bsdf) {

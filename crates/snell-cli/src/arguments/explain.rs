@@ -6,8 +6,8 @@ use clap::{Args, ValueEnum};
 use snell::explain::View;
 use snell::math::Point3;
 
-use super::PictureArguments;
 use super::drawing::coordinates;
+use super::{PathArguments, PictureArguments};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -21,9 +21,11 @@ Examples:
   snell explain lens --find depth=6 --count 1 -o deep.svg
                                            the clearest one, drawn
   snell explain seven-rays                 the lecture's seven rays, each in a drawing of its own
+  snell explain caustic --pixel 290,240 --samples 16
+                                           of path tracing: the ways that light took
 
-A share is the part of the pixel's luminance that a ray and all that followed from it brought. In paths, R is reflected
-and T transmitted light.";
+A share is the part of the pixel's luminance that a ray and all that followed from it brought. In ways, R is reflected,
+T transmitted and D scattered light.";
 
 /// `snell explain`.
 #[derive(Args, Debug)]
@@ -31,7 +33,8 @@ and T transmitted light.";
 pub struct ExplainArguments {
     /// A scene (.toml, .json, .nff), a mesh (.ply, .obj, .stl) or the name of a built-in scene. With nothing else said, each
     /// of the lecture's seven rays is looked for in it and drawn
-    pub scene: String,
+    #[arg(required_unless_present = "find")]
+    pub scene: Option<String>,
 
     /// The pixel, from the left and from the top; 0,0 is the first one
     #[arg(long, value_name = "X,Y", value_parser = pixel, conflicts_with = "ray")]
@@ -41,8 +44,8 @@ pub struct ExplainArguments {
     #[arg(long, value_name = "X,Y,Z,DX,DY,DZ", value_parser = coordinates::<6>, allow_hyphen_values = true)]
     pub ray: Option<[f64; 6]>,
 
-    /// One of the pixel's samples alone, counted from 0
-    #[arg(long, value_name = "N", requires = "pixel", value_parser = clap::value_parser!(u32).range(0..65536))]
+    /// One of the pixel's samples alone, counted from 0; of a ray, whose random numbers it has
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..1 << 24))]
     pub sample: Option<u32>,
 
     /// Look for pixels that show something, the clearest first: `--find list` tells what there is
@@ -73,6 +76,9 @@ pub struct ExplainArguments {
     /// What decides how the picture is rendered.
     #[command(flatten)]
     pub picture: PictureArguments,
+
+    #[command(flatten)]
+    pub paths: PathArguments,
 }
 
 /// Names of `--format`.

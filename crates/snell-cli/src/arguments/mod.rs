@@ -16,7 +16,7 @@ use snell::scene::scene::{Shadows, Tone};
 pub use drawing::{DrawArguments, HiddenName, StrokeName, ViewArguments, ViewFormat};
 pub use explain::{ExplainArguments, ExplainFormat};
 pub use glass::{GlassArguments, GlassFormat, MediumName};
-pub use paths::{IntegratorName, PathArguments};
+pub use paths::{IntegratorName, PathArguments, StopArguments};
 pub use picture::{PictureArguments, word};
 
 const EXAMPLES: &str = "\
@@ -125,6 +125,9 @@ pub struct RenderArguments {
 
     #[command(flatten)]
     pub paths: PathArguments,
+
+    #[command(flatten)]
+    pub stop: StopArguments,
 
     /// Threads [default: one for each core]
     #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]

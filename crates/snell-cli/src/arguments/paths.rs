@@ -1,10 +1,10 @@
-//! What `snell render` is told about path tracing.
+//! What commands that render or explain are told about path tracing.
 
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 
-/// How light is followed, and for how long.
+/// How light is followed.
 #[derive(Args, Debug)]
 pub struct PathArguments {
     /// How light is followed: `whitted` as the lecture has it; `path` as it is, with light that comes through glass
@@ -16,14 +16,6 @@ pub struct PathArguments {
     #[arg(help_heading = "Paths")]
     pub samples: Option<u32>,
 
-    /// Finish pixels whose error is below this share of their brightness
-    #[arg(long, value_name = "SHARE", value_parser = noise, help_heading = "Paths")]
-    pub noise: Option<f64>,
-
-    /// Begin no further sample after this time, such as 30s or 5min
-    #[arg(long, value_name = "TIME", value_parser = time, help_heading = "Paths")]
-    pub time: Option<Duration>,
-
     /// Leave light that comes through glass to chance: lights send out nothing
     #[arg(long, help_heading = "Paths")]
     pub no_photons: bool,
@@ -31,6 +23,38 @@ pub struct PathArguments {
     /// What random numbers depend on
     #[arg(long, value_name = "N", help_heading = "Paths")]
     pub seed: Option<u32>,
+}
+
+impl PathArguments {
+    /// The words of a command line that say the same of one sample, each after a blank.
+    pub fn words(&self) -> String {
+        let Self { integrator, samples: _, no_photons, seed } = self;
+        let mut words = String::new();
+        match integrator {
+            Some(IntegratorName::Path) => words += " --integrator path",
+            Some(IntegratorName::Whitted) => words += " --integrator whitted",
+            None => {}
+        }
+        if *no_photons {
+            words += " --no-photons";
+        }
+        if let Some(seed) = seed {
+            words += &format!(" --seed {seed}");
+        }
+        words
+    }
+}
+
+/// When path tracing ends, besides by its number of samples.
+#[derive(Args, Debug)]
+pub struct StopArguments {
+    /// Finish pixels whose error is below this share of their brightness
+    #[arg(long, value_name = "SHARE", value_parser = noise, help_heading = "Paths")]
+    pub noise: Option<f64>,
+
+    /// Begin no further sample after this time, such as 30s or 5min
+    #[arg(long, value_name = "TIME", value_parser = time, help_heading = "Paths")]
+    pub time: Option<Duration>,
 }
 
 /// Names of `--integrator`.

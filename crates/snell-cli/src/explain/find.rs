@@ -7,7 +7,7 @@ use snell::explain::{PHENOMENA, Phenomenon, SEVEN_RAYS, Subject, find};
 use snell::scene::Diagnostic;
 use snell::scene::diagnostic::did_you_mean;
 
-use super::{Picture, draw, explained, failure, put};
+use super::{Picture, draw, explained, put};
 use crate::arguments::{ExplainArguments, ExplainFormat};
 use crate::console::{quoted, say, write_stdout};
 use crate::failure::Failure;
@@ -51,7 +51,7 @@ pub fn run(arguments: &ExplainArguments, format: ExplainFormat, picture: &Pictur
         check_object(picture, object)?;
     }
     let count = arguments.count.unwrap_or(COUNT) as usize;
-    let found = find(picture.scene, picture.settings, &phenomenon, count).map_err(|error| failure(&error))?;
+    let found = find(&mut picture.watch()?, &phenomenon, count);
     let Some(best) = found.first() else {
         return Err(Failure::input(Diagnostic::error(format!(
             "no pixel of {} shows {}",
@@ -94,8 +94,9 @@ pub fn seven_rays(arguments: &ExplainArguments, picture: &Picture<'_>, stem: &st
         (None, Some(_)) => super::format(arguments)?,
     };
     let mut missing = 0;
+    let mut watch = picture.watch()?;
     for (number, (phenomenon, title)) in (1..).zip(SEVEN_RAYS.iter().zip(SEVEN_TITLES)) {
-        let found = find(picture.scene, picture.settings, phenomenon, 1).map_err(|error| failure(&error))?;
+        let found = find(&mut watch, phenomenon, 1);
         let Some(best) = found.first() else {
             say(format_args!("{title}: no pixel of {} shows it", quoted(picture.name)));
             missing += 1;

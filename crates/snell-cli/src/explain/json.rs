@@ -21,6 +21,7 @@ pub fn json(picture: &Picture<'_>, told: &Explanation) -> Value {
             "number": sample.number,
             "place": sample.place,
             "color": color(sample.color),
+            "wavelengths_nm": sample.wavelengths_nm,
             "camera_ray": sample.camera_ray,
         })
     };
@@ -41,7 +42,9 @@ fn subject(subject: Subject) -> Value {
     match subject {
         Subject::Pixel(pixel) => json!({ "pixel": pixel }),
         Subject::Sample(pixel, sample) => json!({ "pixel": pixel, "sample": sample }),
-        Subject::Ray(ray) => json!({ "origin": point(ray.origin), "direction": vector(ray.direction) }),
+        Subject::Ray(ray, sample) => {
+            json!({ "origin": point(ray.origin), "direction": vector(ray.direction), "sample": sample })
+        }
     }
 }
 
@@ -161,6 +164,7 @@ fn end(end: End) -> &'static str {
         End::Light => "light",
         End::Background => "background",
         End::NoEffect => "no-effect",
+        End::Scattered => "scattered",
         End::Blocked => "blocked",
         End::DepthLimit => "depth-limit",
         End::TooLittleWeight => "too-little-weight",

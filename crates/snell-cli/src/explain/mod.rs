@@ -8,10 +8,11 @@ mod text;
 use std::path::Path;
 
 use snell::compile::CompiledScene;
-use snell::explain::{Explanation, Subject, explain};
+use snell::explain::{Explanation, Subject, explain_watched};
 use snell::math::{Point3, Ray, Vector3};
-use snell::render::RenderSettings;
+use snell::render::{PathSettings, RenderSettings, Watch};
 use snell::scene::Diagnostic;
+use snell::trace::Scratch;
 
 use crate::arguments::{ExplainArguments, ExplainFormat};
 use crate::assets::FileAssets;
@@ -20,6 +21,7 @@ use crate::diagnostics;
 use crate::failure::{FINE, Failure};
 use crate::load::Place;
 use crate::output::{check_writable, spare_sources, write_file};
+use crate::paths;
 use crate::render::{compile, picture_settings, read};
 
 /// A scene and how its picture is rendered.
@@ -28,6 +30,13 @@ struct Picture<'a> {
     name: &'a str,
     scene: &'a CompiledScene,
     settings: &'a RenderSettings,
+    paths: Option<PathSettings>,
+}
+
+impl<'a> Picture<'a> {
+    fn watch(&self) -> Result<Watch<'a>, Failure> {
+        paths::watch(self.scene, self.settings, self.paths.as_ref())
+    }
 }
 
 /// Explains as the command line says, and returns the exit code.
@@ -36,7 +45,13 @@ pub fn run(arguments: &ExplainArguments) -> Result<u8, Failure> {
         find::list()?;
         return Ok(FINE);
     }
-    let place = Place::find(&arguments.scene)?;
+    let Some(scene) = &arguments.scene else {
+        let message = "--find looks for pixels of a scene, and none is given";
+        return Err(Failure::usage(
+            Diagnostic::error(message).help("name a scene, such as `snell explain lens --find tir`"),
+        ));
+    };
+    let place = Place::find(scene)?;
     let format = format(arguments)?;
     if let Some(path) = &arguments.output {
         check_writable(path)?;
@@ -49,7 +64,8 @@ pub fn run(arguments: &ExplainArguments) -> Result<u8, Failure> {
     let compiled = compile(&scene, &mut told)?;
     diagnostics::print(&told);
     let settings = picture_settings(&arguments.picture, &scene);
-    let picture = Picture { name: place.name(), scene: &compiled, settings: &settings };
+    let paths = paths::settings(&arguments.paths, &arguments.picture, &scene, &[])?;
+    let picture = Picture { name: place.name(), scene: &compiled, settings: &settings, paths };
     match subject(arguments, &settings)? {
         Some(subject) => put(arguments, format, &picture, &explained(&picture, subject)?, arguments.output.as_deref())?,
         None if arguments.find.is_some() => find::run(arguments, format, &picture)?,
@@ -60,7 +76,7 @@ pub fn run(arguments: &ExplainArguments) -> Result<u8, Failure> {
 
 /// The explanation of something in a picture.
 fn explained(picture: &Picture<'_>, subject: Subject) -> Result<Explanation, Failure> {
-    explain(picture.scene, picture.settings, subject).map_err(|error| failure(&error))
+    Ok(explain_watched(&mut picture.watch()?, subject, &mut Scratch::default()))
 }
 
 fn failure(error: &dyn std::fmt::Display) -> Failure {
@@ -124,9 +140,16 @@ fn subject(arguments: &ExplainArguments, settings: &RenderSettings) -> Result<Op
             let message = "--ray has a direction without length: its last three numbers say where it goes";
             return Err(Failure::usage(Diagnostic::error(message)));
         }
-        return Ok(Some(Subject::Ray(Ray::new(Point3::new(x, y, z), direction))));
+        let ray = Ray::new(Point3::new(x, y, z), direction);
+        return Ok(Some(Subject::Ray(ray, arguments.sample.unwrap_or(0))));
     }
-    let Some(pixel) = arguments.pixel else { return Ok(None) };
+    let Some(pixel) = arguments.pixel else {
+        if arguments.sample.is_some() {
+            let message = "--sample says which sample of a pixel, and there is no --pixel";
+            return Err(Failure::usage(Diagnostic::error(message).help("add --pixel X,Y, or --ray")));
+        }
+        return Ok(None);
+    };
     let [x, y] = pixel;
     let RenderSettings { width, height, .. } = *settings;
     if x >= width || y >= height {

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use snell::explain::words::{arrival, details, point, sentence, vector};
-use snell::explain::{ExplainedRay, ExplainedTerm, Explanation, Kind, Subject, TermKind};
+use snell::explain::{ExplainedRay, ExplainedTerm, Explanation, Kind, StepKind, Subject, TermKind};
 
 use super::Picture;
 
@@ -47,7 +47,7 @@ fn heading(picture: &Picture<'_>, told: &Explanation) -> String {
         Subject::Sample([x, y], sample) => {
             format!("Sample {sample} of pixel {x},{y} of {} ({width}x{height})", picture.name)
         }
-        Subject::Ray(ray) => {
+        Subject::Ray(ray, _) => {
             let (from, to) = (point(ray.origin), vector(ray.direction));
             format!("The ray from {from} towards {to} in {}", picture.name)
         }
@@ -55,6 +55,12 @@ fn heading(picture: &Picture<'_>, told: &Explanation) -> String {
     let count = told.samples.len();
     let samples = if count == 1 { String::new() } else { format!(", the mean of {count} samples") };
     let mut text = format!("{what}: red {r:.4}, green {g:.4}, blue {b:.4}{samples}.\n");
+    if let [sample] = told.samples.as_slice()
+        && let [_, ..] = sample.wavelengths_nm[..]
+    {
+        let listed: Vec<String> = sample.wavelengths_nm.iter().map(|nm| format!("{nm:.0}")).collect();
+        let _ = writeln!(text, "A path of {} nm; the first decides where it is bent.", listed.join(", "));
+    }
     let lost = told.samples.iter().filter(|sample| !sample.color.is_finite()).count();
     if lost > 0 {
         let _ = writeln!(text, "{lost} of its samples are infinite or no numbers, and count as black.");
@@ -77,7 +83,12 @@ fn paths(told: &Explanation, text: &mut String) {
         let count = told.paths.len() - MOST_PATHS;
         let _ = writeln!(text, "{} {r:7.4} {g:7.4} {b:7.4}  {:9}  {:7}  {count} more", percent(told, rest), "", "");
     }
-    text.push_str("\nR reflected, T transmitted.\n");
+    let is_scattered = told.paths.iter().any(|path| path.steps.iter().any(|step| step.kind == StepKind::Scattered));
+    text.push_str(if is_scattered {
+        "\nR reflected, T transmitted, D scattered.\n"
+    } else {
+        "\nR reflected, T transmitted.\n"
+    });
 }
 
 /// A tree in the making.
@@ -100,7 +111,7 @@ impl<'a> Tree<'a> {
     fn ray(&mut self, number: usize, branches: &mut Vec<bool>, parent: Option<&ExplainedRay>) {
         let ray = &self.told.rays[number];
         let (name, color) = match ray.kind {
-            Kind::Camera if matches!(self.told.subject, Subject::Ray(_)) => ("ray", style::CAMERA),
+            Kind::Camera if matches!(self.told.subject, Subject::Ray(..)) => ("ray", style::CAMERA),
             Kind::Camera => ("camera ray", style::CAMERA),
             Kind::Reflected => ("reflected ray", style::REFLECTED),
             Kind::Refracted => ("refracted ray", style::REFRACTED),

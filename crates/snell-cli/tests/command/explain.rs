@@ -34,6 +34,8 @@ fn texts_are_what_they_were() {
         ("seven-rays-details.txt", format!("{PIXEL} --details")),
         ("lens-paths.txt", "explain lens --width 64 --pixel 30,20 --aa 8".to_owned()),
         ("prism.txt", "explain refraction-and-wavelength --width 64 --pixel 30,20 --aa none".to_owned()),
+        ("path.txt", "explain caustic --width 64 --pixel 18,21 --sample 3 --details".to_owned()),
+        ("path-ways.txt", "explain caustic --width 64 --pixel 18,21 --samples 32".to_owned()),
     ] {
         let run = folder.good(&line);
         assert!(!run.text().contains('\x1b'), "no colours where nobody sees them");
@@ -84,6 +86,9 @@ fn json_is_as_its_schema_says_and_adds_up() {
         "explain refraction-and-wavelength --width 64 --pixel 30,20 --aa 3",
         "explain lens --width 64 --pixel 2,2",
         "explain lens --ray 0,1,9,0,0,-1",
+        "explain caustic --width 64 --pixel 39,30 --samples 5",
+        "explain lens --integrator path --width 64 --pixel 30,20 --sample 7 --seed 3",
+        "explain caustic --ray 0,3,7,0,-0.2,-1 --sample 2",
     ] {
         is_sound(&folder.good(&format!("{line} --format json")).json());
     }
@@ -115,7 +120,7 @@ fn a_wavelength_bends_as_its_index_says() {
 #[test]
 fn what_is_looked_for_is_found() {
     let folder = Folder::new();
-    let list = folder.good("explain any --find list");
+    let list = folder.good("explain --find list");
     assert!(list.text().lines().count() > 10 && list.text().contains("tir"), "{list:?}");
     let found = folder.good("explain seven-rays --width 200 --find shadow-through-glass --count 3");
     assert_eq!(found.text().lines().count(), 3, "{found:?}");
@@ -149,16 +154,17 @@ fn maps_are_false_colours_with_a_bar() {
         let (width, height) = folder.picture("a.png").size();
         assert!(width == 64 && height > 48, "{map}: {height}");
     }
-    assert!(folder.good("render any --map list").text().contains("share:object=NAME"));
+    assert!(folder.good("render --map list").text().contains("share:object=NAME"));
     folder.good("render seven-rays --width 64 --map depth -o a.exr");
+    folder.good("render caustic --width 64 --samples 4 --map share:photons -o a.png");
     let wrong = folder.run("render seven-rays --width 64 --map dept -o a.png");
     assert!(wrong.code == Some(2) && wrong.stderr.contains("did you mean \"depth\"?"), "{wrong:?}");
     let wrong = folder.run("render seven-rays --width 64 --map share:object=bord -o a.png");
     assert!(wrong.code == Some(1) && wrong.stderr.contains("did you mean \"board\"?"), "{wrong:?}");
 }
 
-#[test]
-fn a_sample_that_is_no_number_is_replayed() {
+/// Renders a scene of which some samples are no numbers, with options, and runs what it says to see the first of them.
+fn replays(options: &str, expected: &str) {
     let folder = Folder::new();
     folder.write(
         "hot scene.toml",
@@ -166,7 +172,7 @@ fn a_sample_that_is_no_number_is_replayed() {
          [[light]]\npoint = { position = [0, 0, 3e-5], intensity = 1e30, falloff = \"inverse-square\" }\n\
          [[object]]\nsphere = { radius = 1e-5 }\nmaterial = { diffuse = 1 }\n",
     );
-    let mut command = folder.command("render --width 40 --height 30 --aa 2 --set camera.fov=30");
+    let mut command = folder.command(&format!("render --width 40 --height 30 --set camera.fov=30 {options}"));
     let output = command.arg("hot scene.toml").output().unwrap();
     let told = String::from_utf8(output.stderr).unwrap().split_whitespace().collect::<Vec<_>>().join(" ");
     // However the terminal breaks its lines.
@@ -174,12 +180,18 @@ fn a_sample_that_is_no_number_is_replayed() {
     let start = told.find("snell explain").unwrap_or_else(|| panic!("{told}"));
     let line = told[start..].split('`').next().unwrap();
     assert!(line.starts_with("snell explain 'hot scene.toml' --pixel "), "{line}");
-    assert!(line.ends_with("--set camera.fov=30 --width 40 --height 30 --aa 2"), "{line}");
+    assert!(line.ends_with(&format!("--set camera.fov=30 --width 40 --height 30{expected}")), "{line}");
     let words = line.replace("snell explain 'hot scene.toml'", "explain --format json");
     let output = folder.command(&words).arg("hot scene.toml").output().unwrap();
     let json: Value = serde_json::from_slice(&output.stdout).unwrap();
     is_sound(&json);
     assert_eq!(json["samples"][0]["color"][0], Value::Null, "it is no number");
+}
+
+#[test]
+fn a_sample_that_is_no_number_is_replayed() {
+    replays("--aa 2", " --aa 2");
+    replays("--integrator path --samples 3 --seed 5", " --integrator path --seed 5");
 }
 
 #[test]
@@ -190,8 +202,13 @@ fn mistakes_are_told() {
         ("explain seven-rays --pixel 3", 2, "two whole numbers"),
         ("explain seven-rays --ray 0,0,0,0,0,0", 2, "direction without length"),
         ("explain seven-rays --sample 1", 2, "--pixel"),
+        ("explain seven-rays --pixel 1,1 --samples 4", 2, "--samples is for path tracing"),
+        ("explain caustic --pixel 1,1 --aa 4", 2, "--aa is for `whitted`"),
+        ("render caustic --map rays --noise 0.1 -o a.png", 2, "--noise"),
         ("explain seven-rays --pixel 3,3 -o a.doc", 2, "no format"),
         ("explain seven-rays --find tirr", 2, "did you mean \"tir\"?"),
+        ("explain --find tir", 2, "none is given"),
+        ("explain --pixel 1,1", 2, "SCENE"),
         ("explain seven-rays --width 64 --find dispersion", 1, "no pixel"),
         ("explain seven-rays --width 64 --find object=bord", 2, "did you mean \"board\"?"),
         ("explain cosine-plot --pixel 1,1", 1, "nothing to render"),

@@ -29,7 +29,9 @@ pub fn explanation(
     let weight = 1.0 / traced.len().max(1) as f64;
     for (number, place, tree) in traced {
         let color = tree.sum();
-        let sample = ExplainedSample { number: *number, place: *place, color, camera_ray: told.rays.len() };
+        let wavelengths_nm = tree.rays.first().map_or_else(Vec::new, |ray| ray.wavelengths.clone());
+        let camera_ray = told.rays.len();
+        let sample = ExplainedSample { number: *number, place: *place, color, wavelengths_nm, camera_ray };
         told.samples.push(sample);
         Sample { watch, told: &mut told, tree, weight, counts: color.is_finite() }.add();
     }
@@ -95,7 +97,8 @@ impl Sample<'_, '_> {
         end: End,
         throughput: Rgb,
     ) -> ExplainedRay {
-        let wavelength_nm = ray.task.band.and_then(|band| self.watch.wavelength_nm(band));
+        let alone = if let [hero] = ray.wavelengths[..] { Some(hero) } else { None };
+        let wavelength_nm = alone.or_else(|| ray.task.band.and_then(|band| self.watch.wavelength_nm(band)));
         ExplainedRay {
             sample,
             parent,
@@ -108,7 +111,7 @@ impl Sample<'_, '_> {
             end,
             distance: None,
             throughput,
-            medium: self.medium(ray.medium, wavelength_nm),
+            medium: self.medium(ray.medium, wavelength_nm.or_else(|| hero(ray))),
             absorption: Rgb::WHITE,
             surface: None,
             blockers: Vec::new(),
@@ -121,16 +124,19 @@ impl Sample<'_, '_> {
         let task = &ray.task;
         let parent = (task.parent != task.id).then(|| first + task.parent as usize);
         let surface = ray.hit.as_ref().and_then(Option::as_ref);
+        let surface = surface.filter(|_| ray.scattered.is_none());
         let end = match (surface, &ray.bsdf) {
+            _ if ray.scattered.is_some() => End::Scattered,
             (None, _) => End::Background,
             (Some(_), None) => End::NoEffect,
             (Some(_), Some(bsdf)) if !bsdf.emission.is_black() => End::Light,
             (Some(_), Some(_)) => End::Surface,
         };
+        let distance = ray.scattered.unwrap_or_else(|| surface.map_or(f64::INFINITY, |surface| surface.t));
         ExplainedRay {
             origin: Some(task.ray.origin),
             direction: Some(task.ray.direction),
-            distance: Some(surface.map_or(f64::INFINITY, |surface| surface.t)),
+            distance: Some(distance),
             absorption: ray.transmittance,
             surface: surface.map(|surface| self.surface(surface, ray)),
             ..self.unknown(ray, sample, parent, end, task.throughput)
@@ -149,11 +155,12 @@ impl Sample<'_, '_> {
             shading_normal: surface.shading_normal,
             incidence: angle_between(surface.shading_normal, wo),
             mirror: ray.bsdf.map_or(Rgb::BLACK, |bsdf| bsdf.mirror),
-            boundaries: ray.boundaries.iter().map(|boundary| self.boundary(boundary, wo)).collect(),
+            boundaries: ray.boundaries.iter().map(|boundary| self.boundary(boundary, ray)).collect(),
         }
     }
 
-    fn boundary(&self, crossing: &BoundaryCrossing, wo: Vector3) -> Boundary {
+    fn boundary(&self, crossing: &BoundaryCrossing, ray: &TracedRay) -> Boundary {
+        let wo = -ray.task.ray.direction;
         let [before, beyond] = crossing.indices;
         let medium = |side: usize| ExplainedMedium {
             material: crossing.media[side].map(|inside| material_name(self.watch.scene, inside.material)),
@@ -161,7 +168,7 @@ impl Sample<'_, '_> {
         };
         Boundary {
             media: [medium(0), medium(1)],
-            wavelength_nm: crossing.band.and_then(|band| self.watch.wavelength_nm(band)),
+            wavelength_nm: hero(ray).or_else(|| crossing.band.and_then(|band| self.watch.wavelength_nm(band))),
             part: crossing.share,
             incidence: angle_between(crossing.normal, wo),
             refraction: crossing.refracted.map(|direction| angle_between(crossing.normal, -direction)),
@@ -196,11 +203,11 @@ impl Sample<'_, '_> {
         let end = if is_blocked { End::Blocked } else { End::Light };
         ExplainedRay {
             kind: Kind::Shadow,
-            light: light_of(question.terms[0].0).map(|light| light_name(self.watch.scene, light)),
+            light: light_of(question.terms[0].0).map(|light| self.watch.light_name(light).to_owned()),
             origin: Some(question.ray.origin),
             direction: Some(question.ray.direction),
             distance: Some(last.unwrap_or(question.distance)),
-            medium: self.medium(first_medium, None),
+            medium: self.medium(first_medium, hero(ray)),
             absorption,
             blockers,
             transmittance: Some(*transmittance),
@@ -232,7 +239,7 @@ impl Sample<'_, '_> {
         self.told.terms.push(ExplainedTerm {
             ray: Some(first + ray),
             kind: term_kind(share.term),
-            light: light_of(share.term).map(|light| light_name(self.watch.scene, light)),
+            light: light_of(share.term).map(|light| self.watch.light_name(light).to_owned()),
             shadow_ray: share.shadow.map(|number| shadows[ray] + number as usize),
             unblocked,
             value: share.value,
@@ -251,7 +258,7 @@ impl Sample<'_, '_> {
                     self.told.terms.push(ExplainedTerm {
                         ray: Some(first + number),
                         kind: term_kind(*term),
-                        light: light_of(*term).map(|light| light_name(self.watch.scene, light)),
+                        light: light_of(*term).map(|light| self.watch.light_name(light).to_owned()),
                         shadow_ray: Some(shadows[number] + shadow_number),
                         unblocked: Some(*unblocked),
                         value: Rgb::BLACK,
@@ -337,8 +344,9 @@ fn material_name(scene: &CompiledScene, material: u32) -> String {
     scene.material_names.get(material as usize).cloned().unwrap_or_default()
 }
 
-fn light_name(scene: &CompiledScene, light: u32) -> String {
-    scene.light_names.get(light as usize).cloned().unwrap_or_default()
+/// The wavelength by which a path's ray is bent, nanometres; `None` of other rays.
+fn hero(ray: &TracedRay) -> Option<f64> {
+    ray.wavelengths.first().copied()
 }
 
 /// The angle between two directions, the normal's sign left out: exact also where it is small.

@@ -13,7 +13,6 @@ use crate::observe::{AnsweredShadow, RayTree, Share, TracedRay};
 use crate::render::{RenderSettings, Watch};
 use crate::task::{RayKind, Term};
 use crate::trace::Scratch;
-use crate::viewing::ViewingError;
 
 /// How many pixels of a large picture are looked at in the first round.
 const MOST_PIXELS: u64 = 150_000;
@@ -122,17 +121,10 @@ pub struct Found {
 
 /// Looks for a phenomenon in the first sample of a picture's pixels: at most `count` pixels, the clearest first, none of them close
 /// to another.
-///
-/// # Errors
-/// [`ViewingError`], where the scene's camera is degenerate.
-pub fn find(
-    scene: &CompiledScene,
-    settings: &RenderSettings,
-    phenomenon: &Phenomenon,
-    count: usize,
-) -> Result<Vec<Found>, ViewingError> {
-    let watch = Watch::new(scene, settings)?;
-    let RenderSettings { width, height, .. } = *settings;
+pub fn find(watch: &mut Watch<'_>, phenomenon: &Phenomenon, count: usize) -> Vec<Found> {
+    watch.ready(0);
+    let watch = &*watch;
+    let RenderSettings { width, height, .. } = *watch.settings;
     let mut step = 1;
     while u64::from(width.div_ceil(step)) * u64::from(height.div_ceil(step)) > MOST_PIXELS {
         step += 1;
@@ -140,7 +132,7 @@ pub fn find(
     let half = step / 2;
     let ys: Vec<u32> = (half..height).step_by(step as usize).collect();
     let row = |scratch: &mut Scratch, y: u32| -> Vec<Found> {
-        (half..width).step_by(step as usize).filter_map(|x| look(&watch, phenomenon, [x, y], scratch)).collect()
+        (half..width).step_by(step as usize).filter_map(|x| look(watch, phenomenon, [x, y], scratch)).collect()
     };
     let mut found: Vec<Found> =
         ys.par_iter().map_init(Scratch::default, |scratch, &y| row(scratch, y)).flatten_iter().collect();
@@ -169,7 +161,7 @@ pub fn find(
             let around = |center: u32, end: u32| center.saturating_sub(half)..(center + step).min(end);
             for y in around(found.pixel[1], height) {
                 for x in around(found.pixel[0], width) {
-                    let other = look(&watch, phenomenon, [x, y], &mut scratch);
+                    let other = look(watch, phenomenon, [x, y], &mut scratch);
                     best = other.filter(|other| order(other, &best).is_lt()).unwrap_or(best);
                 }
             }
@@ -177,7 +169,7 @@ pub fn find(
         chosen.push(best);
     }
     chosen.sort_by(order);
-    Ok(chosen)
+    chosen
 }
 
 /// How clearly a pixel's first sample shows a phenomenon.
@@ -236,6 +228,7 @@ impl Look<'_> {
                     .map(unblocked)
                     .fold(0.0, f64::max)
             }
+            // Light that paths find behind glass comes as photons, wherever it comes to.
             Phenomenon::ShadowThroughGlass if !first_is_body => camera
                 .shadows
                 .iter()
@@ -245,8 +238,11 @@ impl Look<'_> {
                     // Clear where much comes and much is missing.
                     unblocked(shadow) * arrives.min(1.0 - arrives).max(0.0)
                 })
-                .fold(0.0, f64::max),
+                .fold(self.share(camera, |term| term == Term::Photons), f64::max),
             Phenomenon::Dispersion => {
+                // A path whose other wavelengths were given up has one colour for certain.
+                let alone = rays.iter().filter(|ray| ray.wavelengths.len() == 1);
+                let alone: f64 = alone.map(|ray| self.share(ray, |_| true)).sum();
                 let splits = rays.iter().filter(|ray| ray.boundaries.len() > 1);
                 let weight = splits.map(|ray| weight(ray.task.throughput)).fold(0.0, f64::max);
                 // Rays are numbered in the order of the list.
@@ -255,7 +251,7 @@ impl Look<'_> {
                 let of_bands = self.tree.shares.iter().filter(is_of_band);
                 let [r, g, b] = of_bands.fold(Rgb::BLACK, |sum, share| sum + share.value).to_array();
                 // Clear where much of its colour is left; where the bands come together again it is white.
-                f64::from(r.max(g).max(b) - r.min(g).min(b)).max(1e-6 * weight)
+                f64::from(r.max(g).max(b) - r.min(g).min(b)).max(1e-6 * weight).max(alone)
             }
             Phenomenon::Absorption => rays
                 .iter()

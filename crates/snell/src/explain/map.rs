@@ -1,8 +1,9 @@
 //! Whole pictures of one property of their pixels: how deep trees go, how many rays they have, how much of the light came which way.
 //!
 //! A picture is rendered with an observer that keeps a few numbers for each sample instead of trees. With adaptive antialiasing a
-//! pixel's first sample speaks for it; with a fixed number of samples it is the mean of all.
+//! pixel's first sample speaks for it; with a fixed number of samples, as paths have it, it is the mean of all.
 
+use std::ops::Range;
 use std::str::FromStr;
 
 use rayon::prelude::*;
@@ -10,13 +11,11 @@ use snell_image::Image;
 use snell_math::Rgb;
 use snell_scene::scene::Antialiasing;
 
-use crate::compile::CompiledScene;
 use crate::interaction::SurfaceInteraction;
-use crate::observe::{Observer, ShadowStep};
+use crate::observe::Observer;
 use crate::render::{Progress, RenderSettings, Watch};
 use crate::task::{Inside, RayKind, RayTask, ShadowQuestion, Term};
 use crate::trace::Scratch;
-use crate::viewing::ViewingError;
 
 /// Samples that are traced together.
 const TOGETHER: usize = 1024;
@@ -30,7 +29,7 @@ pub enum Property {
     Rays,
     /// How often light meets total internal reflection.
     TotalInternalReflection,
-    /// The share of the light that comes from lights through transparent bodies onto a surface.
+    /// The share of the light that comes from lights through transparent bodies onto a surface; of paths, also off mirrors.
     Caustic,
     /// The share of the light that is of one kind.
     Share(ShareOf),
@@ -53,6 +52,12 @@ pub enum ShareOf {
     Specular,
     /// Was scattered in a milky body.
     Scattering,
+    /// Was found where it is given off.
+    Emission,
+    /// Came as photons.
+    Photons,
+    /// Came to a surface or out of a medium that scattered it on its way, after the first one.
+    Scattered,
     /// Comes from the surface of an object.
     Object(String),
     /// Comes from a light.
@@ -71,7 +76,10 @@ pub const PROPERTIES: &[(&str, &str)] = &[
     ("share:ambient", "share of ambient terms"),
     ("share:diffuse", "share of diffuse terms"),
     ("share:specular", "share of highlights"),
-    ("share:scattering", "share of scattered light"),
+    ("share:scattering", "share of light scattered in media"),
+    ("share:emission", "share of light found where it is given off"),
+    ("share:photons", "share of photons"),
+    ("share:scattered", "share of light that paths found after a turn"),
     ("share:object=NAME", "share of an object's light"),
     ("share:light=NAME", "share of a light"),
 ];
@@ -88,9 +96,6 @@ pub enum MapError {
     /// The scene has no such light.
     #[error("the scene has no light called \"{0}\"")]
     NoLight(String),
-    /// The camera is degenerate.
-    #[error(transparent)]
-    Viewing(#[from] ViewingError),
 }
 
 impl FromStr for Property {
@@ -117,6 +122,9 @@ impl FromStr for Property {
             ("diffuse", _) => ShareOf::Diffuse,
             ("specular", _) => ShareOf::Specular,
             ("scattering", _) => ShareOf::Scattering,
+            ("emission", _) => ShareOf::Emission,
+            ("photons", _) => ShareOf::Photons,
+            ("scattered", _) => ShareOf::Scattered,
             _ => return Err(unknown()),
         }))
     }
@@ -137,7 +145,10 @@ impl Property {
                 ShareOf::Ambient => "share of ambient light".to_owned(),
                 ShareOf::Diffuse => "share of diffuse light".to_owned(),
                 ShareOf::Specular => "share of highlights".to_owned(),
-                ShareOf::Scattering => "share of scattered light".to_owned(),
+                ShareOf::Scattering => "share of light scattered in media".to_owned(),
+                ShareOf::Emission => "share of light where it is given off".to_owned(),
+                ShareOf::Photons => "share of photons".to_owned(),
+                ShareOf::Scattered => "share of light after a turn".to_owned(),
                 ShareOf::Object(name) => format!("share of light of {name}"),
                 ShareOf::Light(name) => format!("share of light of {name}"),
             },
@@ -153,41 +164,60 @@ impl Property {
 /// A property of every pixel of a picture.
 ///
 /// # Errors
-/// [`MapError`], where the scene has no object or light of the name, or its camera is degenerate.
-pub fn map(
-    scene: &CompiledScene,
-    settings: &RenderSettings,
-    property: &Property,
+/// [`MapError`], where the scene has no object or light of the name.
+pub fn map(watch: &mut Watch<'_>, property: &Property, progress: &dyn Progress) -> Result<Image<f32>, MapError> {
+    let wanted = Wanted::new(watch, property)?;
+    let RenderSettings { width, height, antialiasing, .. } = *watch.settings;
+    let of_pixel = match antialiasing {
+        Antialiasing::Samples(count) => count.max(1),
+        Antialiasing::None | Antialiasing::Adaptive => 1,
+    };
+    let mut sums = vec![PixelTally::default(); width as usize * height as usize];
+    // Samples that need something of their own are traced number by number.
+    let (passes, per_pass) = watch.passes().map_or((1, of_pixel), |passes| (passes, 1));
+    for pass in 0..passes {
+        watch.ready(pass);
+        progress.pass(pass, sums.len() as u64);
+        trace_pass(watch, &wanted, pass..pass + per_pass, &mut sums, progress);
+        if progress.is_cancelled() {
+            break;
+        }
+    }
+    let values = sums.iter().map(|sum| wanted.value(sum)).collect();
+    Ok(Image::from_pixels(width, height, values).unwrap_or_else(|_| Image::filled(width, height, 0.0)))
+}
+
+/// Adds some samples of every pixel to its sums.
+fn trace_pass(
+    watch: &Watch<'_>,
+    wanted: &Wanted,
+    numbers: Range<u32>,
+    sums: &mut [PixelTally],
     progress: &dyn Progress,
-) -> Result<Image<f32>, MapError> {
-    let wanted = Wanted::new(scene, property)?;
-    let watch = Watch::new(scene, settings)?;
-    let RenderSettings { width, height, .. } = *settings;
-    let per_pixel = if let Antialiasing::Samples(count) = settings.antialiasing { count.max(1) } else { 1 };
-    let mut values = vec![0.0; width as usize * height as usize];
-    progress.pass(0, values.len() as u64);
+) {
+    let width = watch.settings.width as usize;
+    let per_pixel = numbers.len();
     // Pieces of rows, so that the rays of a batch are neighbours.
-    let together = (TOGETHER / per_pixel as usize).clamp(1, width as usize);
-    let rows = values.par_chunks_mut(width as usize).enumerate();
-    let worker = || (Scratch::default(), Tally::new(&wanted));
+    let together = (TOGETHER / per_pixel).clamp(1, width);
+    let rows = sums.par_chunks_mut(width).enumerate();
+    let worker = || (Scratch::default(), Tally::new(wanted));
     rows.for_each_init(worker, |(scratch, tally), (y, row)| {
-        for (piece, values) in row.chunks_mut(together).enumerate() {
+        for (piece, sums) in row.chunks_mut(together).enumerate() {
             if progress.is_cancelled() {
                 return;
             }
             let first = piece * together;
-            let pixels = (first..first + values.len()).map(|x| [x as u32, y as u32]);
+            let pixels = (first..first + sums.len()).map(|x| [x as u32, y as u32]);
             let samples: Vec<([u32; 2], u32)> =
-                pixels.flat_map(|pixel| (0..per_pixel).map(move |number| (pixel, number))).collect();
+                pixels.flat_map(|pixel| numbers.clone().map(move |number| (pixel, number))).collect();
             tally.begin(samples.len());
             watch.samples(&samples, scratch, tally);
-            for (value, samples) in values.iter_mut().zip(tally.samples.chunks(per_pixel as usize)) {
-                *value = wanted.value(samples);
+            for (sum, samples) in sums.iter_mut().zip(tally.samples.chunks(per_pixel)) {
+                samples.iter().for_each(|sample| sum.add(sample));
             }
         }
         progress.advance(row.len() as u64, 0);
     });
-    Ok(Image::from_pixels(width, height, values).unwrap_or_else(|_| Image::filled(width, height, 0.0)))
 }
 
 /// A property, with numbers instead of names.
@@ -204,6 +234,9 @@ enum Wanted {
     Diffuse,
     Specular,
     Scattering,
+    Emission,
+    Photons,
+    Scattered,
     /// Objects that have the name.
     Objects(Vec<u32>),
     /// Lights that have the name.
@@ -211,7 +244,8 @@ enum Wanted {
 }
 
 impl Wanted {
-    fn new(scene: &CompiledScene, property: &Property) -> Result<Self, MapError> {
+    fn new(watch: &Watch<'_>, property: &Property) -> Result<Self, MapError> {
+        let scene = watch.scene;
         let Property::Share(of) = property else {
             return Ok(match property {
                 Property::Depth => Self::Depth,
@@ -228,6 +262,9 @@ impl Wanted {
             ShareOf::Diffuse => Self::Diffuse,
             ShareOf::Specular => Self::Specular,
             ShareOf::Scattering => Self::Scattering,
+            ShareOf::Emission => Self::Emission,
+            ShareOf::Photons => Self::Photons,
+            ShareOf::Scattered => Self::Scattered,
             ShareOf::Object(name) => {
                 let numbers = (0..scene.object_names.len() as u32)
                     .filter(|&number| scene.object_names.get(number).as_deref() == Some(name));
@@ -238,7 +275,7 @@ impl Wanted {
                 Self::Objects(numbers)
             }
             ShareOf::Light(name) => {
-                let numbers = (0..).zip(&scene.light_names).filter(|(_, other)| *other == name);
+                let numbers = (0..).zip(watch.light_names()).filter(|(_, other)| *other == name);
                 let numbers: Vec<u32> = numbers.map(|(number, _)| number).collect();
                 if numbers.is_empty() {
                     return Err(MapError::NoLight(name.clone()));
@@ -249,24 +286,28 @@ impl Wanted {
     }
 
     /// The value of a pixel by its samples.
-    fn value(&self, samples: &[SampleTally]) -> f32 {
-        let count = samples.len().max(1) as f32;
-        let mean = |of: fn(&SampleTally) -> u32| samples.iter().map(|sample| of(sample) as f32).sum::<f32>() / count;
+    fn value(&self, sum: &PixelTally) -> f32 {
+        let mean = |sum_of: u64, samples: u32| sum_of as f32 / samples.max(1) as f32;
         match self {
-            Self::Depth => samples.iter().map(|sample| sample.depth as f32).fold(0.0, f32::max),
-            Self::Rays => mean(|sample| sample.rays),
-            Self::TotalInternalReflection => mean(|sample| sample.totals),
+            Self::Depth => sum.depth as f32,
+            Self::Rays => mean(sum.rays, sum.samples),
+            Self::TotalInternalReflection => mean(sum.totals, sum.samples),
             _ => {
-                let [part, all] = [0, 1].map(|i: usize| samples.iter().map(|s| s.light[i]).sum::<f32>());
+                let [part, all] = sum.light;
                 if all > 0.0 { (part / all).clamp(0.0, 1.0) } else { 0.0 }
             }
         }
     }
 
     /// Whether a term is of the kind that is asked for.
-    fn includes(&self, ray: RayTally, term: Term, through_body: bool) -> bool {
+    fn includes(&self, ray: RayTally, term: Term, is_filtered: impl FnOnce() -> bool) -> bool {
         match self {
-            Self::Caustic => through_body && matches!(term, Term::Diffuse(_) | Term::Specular(_)),
+            Self::Caustic => match term {
+                Term::Diffuse(_) | Term::Specular(_) => is_filtered(),
+                Term::Photons => true,
+                Term::Emission | Term::Background => ray.after_turn,
+                Term::Ambient | Term::Scattering(_) => false,
+            },
             Self::Reflected => ray.reflected,
             Self::Refracted => ray.refracted,
             Self::Background => term == Term::Background,
@@ -274,6 +315,9 @@ impl Wanted {
             Self::Diffuse => matches!(term, Term::Diffuse(_)),
             Self::Specular => matches!(term, Term::Specular(_)),
             Self::Scattering => matches!(term, Term::Scattering(_)),
+            Self::Emission => term == Term::Emission,
+            Self::Photons => term == Term::Photons,
+            Self::Scattered => ray.scattered,
             Self::Objects(numbers) => ray.object.is_some_and(|object| numbers.contains(&object)),
             Self::Lights(numbers) => match term {
                 Term::Diffuse(light) | Term::Specular(light) | Term::Scattering(light) => numbers.contains(&light),
@@ -290,6 +334,10 @@ struct RayTally {
     sample: u32,
     reflected: bool,
     refracted: bool,
+    /// Its path took a turn before, at a surface that is not specular or in a medium.
+    scattered: bool,
+    /// And from there on it met specular surfaces alone, one at least.
+    after_turn: bool,
     object: Option<u32>,
 }
 
@@ -303,6 +351,29 @@ struct SampleTally {
     light: [f32; 2],
 }
 
+/// What is known of a pixel: sums over its samples.
+#[derive(Clone, Copy, Debug, Default)]
+struct PixelTally {
+    samples: u32,
+    /// Of the deepest.
+    depth: u32,
+    rays: u64,
+    totals: u64,
+    light: [f32; 2],
+}
+
+impl PixelTally {
+    fn add(&mut self, sample: &SampleTally) {
+        self.samples += 1;
+        self.depth = self.depth.max(sample.depth);
+        self.rays += u64::from(sample.rays);
+        self.totals += u64::from(sample.totals);
+        for (sum, light) in self.light.iter_mut().zip(sample.light) {
+            *sum += light;
+        }
+    }
+}
+
 /// Counts what a map needs, for samples that are traced together.
 #[derive(Debug)]
 struct Tally<'w> {
@@ -310,22 +381,22 @@ struct Tally<'w> {
     /// By the numbers of rays.
     rays: Vec<RayTally>,
     samples: Vec<SampleTally>,
-    /// The shadow ray that was answered last went through a transparent body.
-    through_body: bool,
-    /// So did the one that is not answered yet.
-    steps_through_body: bool,
+    /// The rays and terms to which light comes through a transparent body, of the questions that are answered together.
+    filtered: Vec<(u32, Term)>,
+    /// Their terms have begun to be told.
+    is_answered: bool,
 }
 
 impl<'w> Tally<'w> {
     fn new(wanted: &'w Wanted) -> Self {
-        Self { wanted, rays: Vec::new(), samples: Vec::new(), through_body: false, steps_through_body: false }
+        Self { wanted, rays: Vec::new(), samples: Vec::new(), filtered: Vec::new(), is_answered: false }
     }
 
     fn begin(&mut self, samples: usize) {
         self.rays.clear();
         self.samples.clear();
         self.samples.resize(samples, SampleTally::default());
-        (self.through_body, self.steps_through_body) = (false, false);
+        self.filtered.clear();
     }
 }
 
@@ -340,8 +411,15 @@ impl Observer for Tally<'_> {
         };
         let reflected = before.reflected || task.kind == RayKind::Reflected;
         let refracted = before.refracted || task.kind == RayKind::Refracted;
-        // Numbered in the order in which they are spawned.
-        self.rays.push(RayTally { sample: task.sample, reflected, refracted, object: None });
+        let turns = task.kind == RayKind::Scattered;
+        let scattered = before.scattered || turns;
+        let after_turn = scattered && !turns;
+        // Those that are spawned side by side are not told in the order of their numbers.
+        if self.rays.len() <= task.id as usize {
+            self.rays.resize(task.id as usize + 1, RayTally::default());
+        }
+        self.rays[task.id as usize] =
+            RayTally { sample: task.sample, reflected, refracted, scattered, after_turn, object: None };
         let sample = &mut self.samples[task.sample as usize];
         sample.depth = sample.depth.max(u32::from(task.depth));
         sample.rays += 1;
@@ -356,17 +434,22 @@ impl Observer for Tally<'_> {
         let light = &mut self.samples[ray.sample as usize].light;
         let luminance = share.luminance();
         light[1] += luminance;
-        if self.wanted.includes(ray, term, self.through_body) {
+        self.is_answered = true;
+        // A question has a diffuse and a specular term, and is told by the first.
+        let first = if let Term::Specular(light) = term { Term::Diffuse(light) } else { term };
+        if self.wanted.includes(ray, term, || self.filtered.contains(&(task, first))) {
             light[0] += luminance;
         }
     }
     #[inline]
-    fn shadow_step(&mut self, step: &ShadowStep) {
-        self.steps_through_body |= step.surface.is_some() && !step.transmittance.is_black();
+    fn filtered(&mut self, task: u32, term: Term) {
+        if std::mem::take(&mut self.is_answered) {
+            self.filtered.clear();
+        }
+        self.filtered.push((task, term));
     }
     #[inline]
     fn shadow(&mut self, question: &ShadowQuestion, _: Rgb) {
-        self.through_body = std::mem::take(&mut self.steps_through_body);
         self.samples[question.sample as usize].rays += 1;
     }
     #[inline]

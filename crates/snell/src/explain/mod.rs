@@ -33,8 +33,8 @@ pub enum Subject {
     Pixel([u32; 2]),
     /// One sample of a pixel, as if it were the only one.
     Sample([u32; 2], u32),
-    /// A ray as if it came from the camera; its direction may have any length but 0.
-    Ray(Ray),
+    /// A ray as if it came from the camera, with the random numbers of a sample; its direction may have any length but 0.
+    Ray(Ray, u32),
 }
 
 /// A pixel, a sample or a ray, explained. Lengths are in world units, angles in radians, colours scene-linear.
@@ -58,7 +58,7 @@ pub struct Explanation {
 }
 
 /// One sample.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ExplainedSample {
     /// Its place in the pixel's sequence of samples.
     pub number: u32,
@@ -66,6 +66,8 @@ pub struct ExplainedSample {
     pub place: Option<[f64; 2]>,
     /// Its colour.
     pub color: Rgb,
+    /// The wavelengths of its path in nanometres, the hero first; none where it is of all light.
+    pub wavelengths_nm: Vec<f64>,
     /// Its camera ray.
     pub camera_ray: usize,
 }
@@ -94,8 +96,10 @@ pub enum End {
     Light,
     /// It left the scene.
     Background,
-    /// At a boundary that another body covers: it went on as the ray that is its child.
+    /// At a boundary that another body covers, or that bends nothing: it went on as the ray that is its child.
     NoEffect,
+    /// In a medium that scattered its light.
+    Scattered,
     /// A shadow ray at a surface that nothing goes through.
     Blocked,
     /// It was not followed: it would have been deeper than allowed.
@@ -128,7 +132,7 @@ pub struct ExplainedRay {
     pub light: Option<String>,
     /// 1 for a camera ray, its parent's plus one for a reflected or refracted one; a shadow ray has its parent's.
     pub depth: u32,
-    /// The wavelength in nanometres, where it carries one band of split light.
+    /// The wavelength in nanometres, where it carries one band of split light, or one wavelength of a path alone.
     pub wavelength_nm: Option<f64>,
     /// Where it begins; `None` where it was not followed.
     pub origin: Option<Point3>,
@@ -182,7 +186,7 @@ pub struct ExplainedSurface {
 pub struct Boundary {
     /// What is before it and behind it.
     pub media: [ExplainedMedium; 2],
-    /// The wavelength in nanometres, where this is about one band of light.
+    /// The wavelength in nanometres, where this is about one band of light, or about the hero of a path.
     pub wavelength_nm: Option<f64>,
     /// The part of the ray's light that this is about: white, or the band's where it splits here.
     pub part: Rgb,
@@ -298,28 +302,27 @@ pub fn explain(
     settings: &RenderSettings,
     subject: Subject,
 ) -> Result<Explanation, ViewingError> {
-    let watch = Watch::new(scene, settings)?;
-    Ok(explain_watched(&watch, subject, &mut Scratch::default()))
+    Ok(explain_watched(&mut Watch::new(scene, settings)?, subject, &mut Scratch::default()))
 }
 
-/// As [`explain`], for many pixels of one picture.
-pub fn explain_watched(watch: &Watch<'_>, subject: Subject, scratch: &mut Scratch) -> Explanation {
+/// As [`explain`], for many pixels of one picture, and for one whose paths are traced: see [`Watch::paths`].
+pub fn explain_watched(watch: &mut Watch<'_>, subject: Subject, scratch: &mut Scratch) -> Explanation {
+    let samples = if let Subject::Pixel(pixel) = subject { watch.sample_count(pixel, scratch) } else { 1 };
     let mut traced: Vec<(u32, Option<[f64; 2]>, RayTree)> = Vec::new();
     let mut one = |number: u32, pixel: [u32; 2], scratch: &mut Scratch| {
         let mut tree = RayTree::default();
+        watch.ready(number);
         watch.sample(pixel, number, scratch, &mut tree);
-        traced.push((number, Some(Watch::sample_place(number)), tree));
+        traced.push((number, Some(watch.sample_place(pixel, number)), tree));
     };
     match subject {
-        Subject::Pixel(pixel) => {
-            let count = watch.sample_count(pixel, scratch);
-            (0..count).for_each(|number| one(number, pixel, scratch));
-        }
+        Subject::Pixel(pixel) => (0..samples).for_each(|number| one(number, pixel, scratch)),
         Subject::Sample(pixel, number) => one(number, pixel, scratch),
-        Subject::Ray(ray) => {
+        Subject::Ray(ray, number) => {
             let mut tree = RayTree::default();
-            watch.ray(Ray::new(ray.origin, ray.direction.normalize()), scratch, &mut tree);
-            traced.push((0, None, tree));
+            watch.ready(number);
+            watch.ray(Ray::new(ray.origin, ray.direction.normalize()), number, scratch, &mut tree);
+            traced.push((number, None, tree));
         }
     }
     let pixel = if let [(_, _, tree)] = traced.as_slice() {

@@ -23,9 +23,12 @@ pub fn sentence(ray: &ExplainedRay) -> String {
         }
         (_, End::TooManyRays) => "is not followed: its sample has too many rays".to_owned(),
         (None, End::Blocked | End::Light) => arrival(ray),
+        (None, End::Scattered) => {
+            format!("is scattered inside {} after {}", medium(&ray.medium), length(ray.distance))
+        }
         (None, _) => "leaves the scene".to_owned(),
         (Some(surface), End::NoEffect) => {
-            format!("goes on through {}, which another body covers there", named(surface))
+            format!("goes straight on through {}, whose boundary does nothing there", named(surface))
         }
         (Some(surface), _) => met(surface),
     };

@@ -352,19 +352,20 @@ impl<O: Observer> Sink<'_, O> {
         self.cut(task.id, task.kind, why, weight);
     }
 
-    /// As [`Sink::ask`], of a question whose answer is known: its terms are what arrives.
-    pub fn answer(&mut self, question: &ShadowQuestion, arrives: bool) {
+    /// As [`Sink::ask`], of a question whose answer is known: what arrives of its first term, and which part of the light that is.
+    pub fn answer(&mut self, question: &ShadowQuestion, arriving: Rgb, transmittance: Rgb) {
         self.statistics.shadow_rays += 1;
-        self.observer.shadow(question, if arrives { Rgb::WHITE } else { Rgb::BLACK });
-        if !arrives {
-            return;
+        self.observer.shadow(question, transmittance);
+        if !arriving.is_black() {
+            self.sums.add_one(question.sample, arriving);
+            self.observer.term(question.task, question.terms[0].0, arriving);
         }
-        for (term, share) in question.terms {
-            if !share.is_black() {
-                self.sums.add_one(question.sample, share);
-                self.observer.term(question.task, term, share);
-            }
-        }
+    }
+
+    /// As [`Sink::total_internal_reflection`], of one ray.
+    pub fn total_internal_reflection_of(&mut self, task: &RayTask) {
+        self.statistics.total_internal_reflections += 1;
+        self.observer.total_internal_reflection(task.id);
     }
 
     /// Counts rays by what made them.

@@ -19,9 +19,9 @@ use snell_image::{Image, Layers};
 use snell_math::lanes::{Lanes, WIDTH};
 use snell_math::{Ray, Rgb, sampling};
 
-pub use paths::{DARK, PathSettings, explain_path, render_paths};
+pub use paths::{DARK, PathSettings, render_paths};
 pub use settings::RenderSettings;
-pub use watch::{Watch, explain};
+pub use watch::{Watch, explain, explain_path};
 
 use crate::camera::Camera;
 use crate::compile::CompiledScene;

@@ -18,8 +18,8 @@ use crate::compile::CompiledScene;
 use crate::film::PixelSum;
 use crate::geometry::Hit;
 use crate::integrator::{Path, PathSample, PhotonPasses, Purpose, Rules};
-use crate::observe::{NoObserver, RayTree};
-use crate::statistics::Statistics;
+use crate::observe::NoObserver;
+use crate::statistics::{SamplePlace, Statistics};
 use crate::task::{RayRows, set_column};
 use crate::trace::{CameraRays, FirstHitWatch, Scratch, Tracer};
 use crate::viewing::ViewingError;
@@ -85,36 +85,6 @@ pub fn render_paths(
     Ok(on_threads(settings, || run_paths(scene, &camera, settings, paths, progress)))
 }
 
-/// Traces one sample of one pixel with the code that renders it by path tracing, and remembers everything.
-///
-/// # Errors
-/// [`ViewingError`], where the scene's camera is degenerate.
-pub fn explain_path(
-    scene: &CompiledScene,
-    settings: &RenderSettings,
-    paths: &PathSettings,
-    [x, y]: [u32; 2],
-    sample: u32,
-) -> Result<RayTree, ViewingError> {
-    let camera = settings.camera(scene)?;
-    let mut integrator = Path::new(scene, &camera);
-    let mut passes = photon_passes(&integrator, settings, paths);
-    for _ in 0..=sample {
-        let Some(passes) = &mut passes else { break };
-        let photons = passes.next(&integrator, scene);
-        integrator.gather_from(photons);
-    }
-    let job = Job { scene, integrator: &integrator, camera: &camera, settings };
-    let mut tree = RayTree::default();
-    let mut state = Vec::new();
-    let pixels = [Pixel { x, y }];
-    let rays = job.begin_paths(&pixels, paths.seed, sample, &mut state);
-    let mut watch = |_: usize, ray: &Ray, hit: &mut Option<Hit>| job.cut_far(ray, hit);
-    let (mut scratch, mut statistics) = (Scratch::default(), Statistics::default());
-    job.path_tracer(paths).trace_with(&rays, &mut state, &mut scratch, &mut statistics, &mut tree, Some(&mut watch));
-    Ok(tree)
-}
-
 /// A pixel, and what its samples have given.
 #[derive(Clone, Copy)]
 struct Estimate {
@@ -141,7 +111,7 @@ fn brightness(color: Rgb) -> f64 {
 }
 
 /// The camera rays of paths.
-struct PathRays<'a> {
+pub(super) struct PathRays<'a> {
     camera: &'a Camera,
     pixels: &'a [Pixel],
     /// Where in its pixel each is, and where on the lens.
@@ -188,7 +158,11 @@ struct Worker {
 }
 
 /// The passes of photons for a picture.
-fn photon_passes(integrator: &Path, settings: &RenderSettings, paths: &PathSettings) -> Option<PhotonPasses> {
+pub(super) fn photon_passes(
+    integrator: &Path,
+    settings: &RenderSettings,
+    paths: &PathSettings,
+) -> Option<PhotonPasses> {
     let pixels = u64::from(settings.width) * u64::from(settings.height);
     if paths.photons { integrator.photon_passes(paths.seed, pixels) } else { None }
 }
@@ -254,13 +228,13 @@ fn run_paths(
 
 impl Job<'_, Path> {
     /// What traces paths. Glass blocks straight ways to lights: light comes through it by refraction.
-    fn path_tracer(&self, paths: &PathSettings) -> Tracer<'_, Path> {
+    pub(super) fn path_tracer(&self, paths: &PathSettings) -> Tracer<'_, Path> {
         let rules = Rules { depth: paths.depth, min_weight: 0.0, weightless_rays: false, shadows: Shadows::Opaque };
         Tracer { scene: self.scene, integrator: self.integrator, rules, instructions: self.settings.instructions }
     }
 
     /// The paths of a sample of some pixels: their states, and their rays.
-    fn begin_paths<'a>(
+    pub(super) fn begin_paths<'a>(
         &'a self,
         pixels: &'a [Pixel],
         seed: u32,
@@ -307,7 +281,8 @@ impl Job<'_, Path> {
                 let brightness = brightness(color);
                 estimate.squares += brightness * brightness;
             } else {
-                statistics.nonfinite_samples += 1;
+                let Pixel { x, y } = estimate.pixel;
+                statistics.add_nonfinite(SamplePlace { y, x, sample });
             }
         }
         if wants_layers && let Some(all) = &mut *lock(all_first_hits) {

@@ -4,12 +4,13 @@ use snell_image::Image;
 use snell_math::{Ray, Rgb, sampling};
 
 use super::adaptive::{self, Display};
-use super::{Job, RenderSettings, split_place};
+use super::paths::photon_passes;
+use super::{Job, PathSettings, Pixel, RenderSettings, split_place};
 use crate::camera::Camera;
 use crate::compile::CompiledScene;
 use crate::film::PixelSum;
 use crate::geometry::Hit;
-use crate::integrator::Whitted;
+use crate::integrator::{Path, PathSample, PhotonPasses, Purpose, Whitted};
 use crate::observe::{NoObserver, Observer, RayTree};
 use crate::statistics::Statistics;
 use crate::task::Band;
@@ -24,18 +25,91 @@ pub struct Watch<'a> {
     /// How its picture is rendered.
     pub settings: &'a RenderSettings,
     camera: Camera,
-    integrator: Whitted,
+    engine: Engine,
+    /// See [`Term`](crate::task::Term).
+    light_names: Vec<String>,
+}
+
+/// What renders it.
+#[derive(Debug)]
+enum Engine {
+    Whitted(Whitted),
+    Path(Box<PathEngine>),
+}
+
+/// Path tracing, with the photons of one sample of all pixels.
+#[derive(Debug)]
+struct PathEngine {
+    integrator: Path,
+    settings: PathSettings,
+    passes: Option<PhotonPasses>,
+    /// Which sample the photons are of; `None` before there are any.
+    ready: Option<u32>,
 }
 
 impl<'a> Watch<'a> {
-    /// Of a scene's picture.
+    /// Of a scene's picture as [`render`](super::render) makes it.
     ///
     /// # Errors
     /// [`ViewingError`], where the scene's camera is degenerate.
     pub fn new(scene: &'a CompiledScene, settings: &'a RenderSettings) -> Result<Self, ViewingError> {
         let camera = settings.camera(scene)?;
-        let integrator = settings.integrator(scene, &camera);
-        Ok(Self { scene, settings, camera, integrator })
+        let engine = Engine::Whitted(settings.integrator(scene, &camera));
+        Ok(Self { scene, settings, camera, engine, light_names: scene.light_names.clone() })
+    }
+
+    /// Of a scene's picture as [`render_paths`](super::render_paths) makes it, without its target of noise.
+    ///
+    /// # Errors
+    /// [`ViewingError`], where the scene's camera is degenerate.
+    pub fn paths(
+        scene: &'a CompiledScene,
+        settings: &'a RenderSettings,
+        paths: &PathSettings,
+    ) -> Result<Self, ViewingError> {
+        let camera = settings.camera(scene)?;
+        let integrator = Path::new(scene, &camera);
+        let light_names = integrator.light_names(scene);
+        let passes = photon_passes(&integrator, settings, paths);
+        let engine = Engine::Path(Box::new(PathEngine { integrator, settings: *paths, passes, ready: None }));
+        Ok(Self { scene, settings, camera, engine, light_names })
+    }
+
+    /// True where paths are traced.
+    pub fn is_path(&self) -> bool {
+        matches!(self.engine, Engine::Path(_))
+    }
+
+    /// The name of a light, by its number in terms; empty where there is none of that number.
+    pub fn light_name(&self, number: u32) -> &str {
+        self.light_names.get(number as usize).map_or("", String::as_str)
+    }
+
+    /// The names of all lights, by their numbers in terms.
+    pub fn light_names(&self) -> &[String] {
+        &self.light_names
+    }
+
+    /// How many samples a pixel has at most where each of them has photons of its own, and is to be made [ready](Self::ready) for; `None`
+    /// where all can be traced at any time.
+    pub fn passes(&self) -> Option<u32> {
+        match &self.engine {
+            Engine::Whitted(_) => None,
+            Engine::Path(paths) => Some(paths.settings.samples),
+        }
+    }
+
+    /// Makes ready for samples of a number: with paths, their photons set out.
+    pub fn ready(&mut self, number: u32) {
+        let Engine::Path(paths) = &mut self.engine else { return };
+        if paths.ready == Some(number) {
+            return;
+        }
+        if let Some(passes) = &mut paths.passes {
+            let photons = passes.of_pass(number, &paths.integrator, self.scene);
+            paths.integrator.gather_from(photons);
+        }
+        paths.ready = Some(number);
     }
 
     /// The picture's camera.
@@ -45,42 +119,84 @@ impl<'a> Watch<'a> {
 
     /// The wavelength that stands for a band, in nanometres.
     pub fn wavelength_nm(&self, band: Band) -> Option<f64> {
-        self.integrator.wavelength_nm(band)
+        match &self.engine {
+            Engine::Whitted(integrator) => integrator.wavelength_nm(band),
+            Engine::Path(_) => None,
+        }
     }
 
     /// Where in its pixel a sample is: both in [0, 1), from the upper left corner.
-    pub fn sample_place(number: u32) -> [f64; 2] {
-        sampling::pixel_sample(number)
+    pub fn sample_place(&self, pixel: [u32; 2], number: u32) -> [f64; 2] {
+        match &self.engine {
+            Engine::Whitted(_) => sampling::pixel_sample(number),
+            Engine::Path(paths) => {
+                let [x, y, ..] = paths.begin(pixel, number).draw(Purpose::Camera);
+                [x, y]
+            }
+        }
     }
 
-    /// Traces one sample of a pixel and gives its colour, which may be no number.
+    /// Traces one sample of a pixel and gives its colour, which may be no number; see [`Self::samples`].
     pub fn sample<O: Observer>(&self, pixel: [u32; 2], number: u32, scratch: &mut Scratch, observer: &mut O) -> Rgb {
         self.samples(&[(pixel, number)], scratch, observer)[0]
     }
 
-    /// Traces samples, each of a pixel, together; gives their colours.
+    /// Traces samples, each of a pixel, together; gives their colours. Of paths, all have the number that the watch is
+    /// [ready](Self::ready) for.
     pub fn samples<'s, O: Observer>(
         &self,
         samples: &[([u32; 2], u32)],
         scratch: &'s mut Scratch,
         observer: &mut O,
     ) -> &'s [Rgb] {
-        let job = self.job();
-        let ray = |&(pixel, number): &([u32; 2], u32)| job.camera_sample(pixel, Self::sample_place(number), number);
-        let rays: Vec<(Ray, u32)> = samples.iter().map(ray).collect();
-        let mut to_far = |_: usize, ray: &Ray, hit: &mut Option<Hit>| job.cut_far(ray, hit);
         let mut statistics = Statistics::default();
-        job.tracer().trace(rays.as_slice(), scratch, &mut statistics, observer, Some(&mut to_far))
+        match &self.engine {
+            Engine::Whitted(integrator) => {
+                let job = self.job(integrator);
+                let ray = |&(pixel, number): &([u32; 2], u32)| {
+                    job.camera_sample(pixel, self.sample_place(pixel, number), number)
+                };
+                let rays: Vec<(Ray, u32)> = samples.iter().map(ray).collect();
+                let mut to_far = |_: usize, ray: &Ray, hit: &mut Option<Hit>| job.cut_far(ray, hit);
+                job.tracer().trace(rays.as_slice(), scratch, &mut statistics, observer, Some(&mut to_far))
+            }
+            Engine::Path(paths) => {
+                let job = self.job(&paths.integrator);
+                debug_assert!(samples.iter().all(|(_, number)| paths.ready == Some(*number)), "made ready for them");
+                let pixels: Vec<Pixel> = samples.iter().map(|&([x, y], _)| Pixel { x, y }).collect();
+                let number = samples.first().map_or(0, |(_, number)| *number);
+                let mut state = Vec::new();
+                let rays = job.begin_paths(&pixels, paths.settings.seed, number, &mut state);
+                let mut to_far = |_: usize, ray: &Ray, hit: &mut Option<Hit>| job.cut_far(ray, hit);
+                let tracer = job.path_tracer(&paths.settings);
+                tracer.trace_with(&rays, &mut state, scratch, &mut statistics, observer, Some(&mut to_far))
+            }
+        }
     }
 
-    /// Traces a ray as if it came from the camera; its direction has unit length.
-    pub fn ray<O: Observer>(&self, ray: Ray, scratch: &mut Scratch, observer: &mut O) -> Rgb {
-        let rays = [(ray, split_place([0, 0], 0))];
-        self.job().tracer().trace(rays.as_slice(), scratch, &mut Statistics::default(), observer, None)[0]
+    /// Traces a ray as if it came from the camera, with the random numbers of that sample of the first pixel; its direction has unit
+    /// length. The watch is [ready](Self::ready) for the sample.
+    pub fn ray<O: Observer>(&self, ray: Ray, number: u32, scratch: &mut Scratch, observer: &mut O) -> Rgb {
+        let rays = [(ray, split_place([0, 0], number))];
+        let mut statistics = Statistics::default();
+        match &self.engine {
+            Engine::Whitted(integrator) => {
+                self.job(integrator).tracer().trace(rays.as_slice(), scratch, &mut statistics, observer, None)[0]
+            }
+            Engine::Path(paths) => {
+                let mut state = vec![paths.begin([0, 0], number)];
+                let tracer = self.job(&paths.integrator);
+                let tracer = tracer.path_tracer(&paths.settings);
+                tracer.trace_with(rays.as_slice(), &mut state, scratch, &mut statistics, observer, None)[0]
+            }
+        }
     }
 
     /// How many samples the picture has in a pixel: with adaptive antialiasing, what its neighbourhood and its own samples ask for.
     pub fn sample_count(&self, [x, y]: [u32; 2], scratch: &mut Scratch) -> u32 {
+        if let Some(samples) = self.passes() {
+            return samples;
+        }
         let settings = self.settings;
         let mut count = 0;
         for (number, pass) in settings.passes().into_iter().enumerate() {
@@ -122,8 +238,14 @@ impl<'a> Watch<'a> {
         unsettled[((y - top) * size.0 + (x - left)) as usize]
     }
 
-    fn job(&self) -> Job<'_, Whitted> {
-        Job { scene: self.scene, integrator: &self.integrator, camera: &self.camera, settings: self.settings }
+    fn job<'b, I>(&'b self, integrator: &'b I) -> Job<'b, I> {
+        Job { scene: self.scene, integrator, camera: &self.camera, settings: self.settings }
+    }
+}
+
+impl PathEngine {
+    fn begin(&self, pixel: [u32; 2], number: u32) -> PathSample {
+        self.integrator.begin(self.settings.seed, pixel, number)
     }
 }
 
@@ -139,5 +261,23 @@ pub fn explain(
 ) -> Result<RayTree, ViewingError> {
     let mut tree = RayTree::default();
     Watch::new(scene, settings)?.sample(pixel, sample, &mut Scratch::default(), &mut tree);
+    Ok(tree)
+}
+
+/// As [`explain`], of a picture whose paths are traced.
+///
+/// # Errors
+/// [`ViewingError`], where the scene's camera is degenerate.
+pub fn explain_path(
+    scene: &CompiledScene,
+    settings: &RenderSettings,
+    paths: &PathSettings,
+    pixel: [u32; 2],
+    sample: u32,
+) -> Result<RayTree, ViewingError> {
+    let mut watch = Watch::paths(scene, settings, paths)?;
+    watch.ready(sample);
+    let mut tree = RayTree::default();
+    watch.sample(pixel, sample, &mut Scratch::default(), &mut tree);
     Ok(tree)
 }

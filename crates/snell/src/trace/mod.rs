@@ -99,8 +99,8 @@ impl<I: Integrator> Tracer<'_, I> {
         let next_id = count as u32;
         let generations = Generations { tracer: self, state, scratch: &mut *scratch, statistics, observer, next_id };
         let whole = Whole { camera_rays, generations, first_hits };
-        if O::WATCHES {
-            // A watcher is told of one ray after the other.
+        if O::DETAILS {
+            // Who wants to know all is told of one ray after the other.
             whole.run::<f64>();
         } else {
             dispatch(self.instructions, whole);

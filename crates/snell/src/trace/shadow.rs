@@ -82,17 +82,6 @@ pub fn answer<L: Lanes, O: Observer>(
         }
     }
     let open = active.without(blocked | transmitted.is_black());
-    if O::WATCHES {
-        let mut shares = [[0.0; WIDTH]; 3];
-        transmitted.store(&mut shares, 0);
-        for lane in active.lanes() {
-            if O::DETAILS && blocked.has(lane) {
-                context.tell_blocker(rows, at + lane, observer);
-            }
-            let transmittance = if blocked.has(lane) { Rgb::BLACK } else { Rgb::from(column(&shares, lane)) };
-            observer.shadow(&rows.question(at + lane), transmittance);
-        }
-    }
     let (first, second) = (LaneColor::load(&rows.shares[0], at), LaneColor::load(&rows.shares[1], at));
     let terms: [(Bits, LaneColor<L::Floats>); 2] = [
         (open.without(first.is_black()), first * transmitted),
@@ -100,12 +89,23 @@ pub fn answer<L: Lanes, O: Observer>(
     ];
     sums.add::<L, 2>(&rows.sample, at, terms);
     if O::WATCHES {
-        for (number, (adding, arriving)) in terms.iter().enumerate() {
-            let mut shares = [[0.0; WIDTH]; 3];
-            arriving.store(&mut shares, 0);
-            for lane in adding.lanes() {
-                let notes = &rows.notes[at + lane];
-                observer.term(notes.task, notes.terms[number], Rgb::from(column(&shares, lane)));
+        let mut shares = [[[0.0; WIDTH]; 3]; 3];
+        for (color, shares) in [transmitted, terms[0].1, terms[1].1].iter().zip(&mut shares) {
+            color.store(shares, 0);
+        }
+        let [transmitted, arriving @ ..] = &shares;
+        // Question by question, however many are answered together: a watcher adds in the order in which samples do.
+        for lane in active.lanes() {
+            if O::DETAILS && blocked.has(lane) {
+                context.tell_blocker(rows, at + lane, observer);
+            }
+            let transmittance = if blocked.has(lane) { Rgb::BLACK } else { Rgb::from(column(transmitted, lane)) };
+            observer.shadow(&rows.question(at + lane), transmittance);
+            let notes = &rows.notes[at + lane];
+            for ((term, (adding, _)), shares) in notes.terms.iter().zip(&terms).zip(arriving) {
+                if adding.has(lane) {
+                    observer.term(notes.task, *term, Rgb::from(column(shares, lane)));
+                }
             }
         }
     }
@@ -162,7 +162,7 @@ impl Context<'_> {
         }
         let before = way.share;
         self.travel(rows, at, lanes, &rows.distance, &mut way);
-        if O::WATCHES {
+        if O::DETAILS {
             for lane in lanes.without(before.is_black()).lanes() {
                 let medium = self.media.current(way.media[lane]);
                 let absorption = self.absorption(rows, at + lane, medium, rows.distance[at + lane] - way.from[lane]);
@@ -260,6 +260,12 @@ impl Context<'_> {
         let through = way.share * LaneColor::load(&transmit, 0) * (L::splat(1.0) - reflectance).to_floats();
         way.share = through.or_where_not(lanes, way.share);
         if O::WATCHES {
+            for lane in lanes.without(through.is_black()).lanes() {
+                let notes = &rows.notes[at + lane];
+                observer.filtered(notes.task, notes.terms[0]);
+            }
+        }
+        if O::DETAILS {
             let mut reflectances = [0.0; WIDTH];
             reflectance.store(&mut reflectances, 0);
             for lane in lanes.lanes() {

@@ -84,7 +84,7 @@ impl List {
         let what = match told.subject {
             Subject::Pixel([x, y]) => format!("Pixel {x}, {y}"),
             Subject::Sample([x, y], sample) => format!("Sample {sample} of pixel {x}, {y}"),
-            Subject::Ray(_) => "A ray".to_owned(),
+            Subject::Ray(..) => "A ray".to_owned(),
         };
         let square = [[0.0, -1.8], [3.6, -1.8], [3.6, 1.8], [0.0, 1.8]].map(|[x, y]| [self.left + x, self.y + y]);
         let pieces = square[1..].iter().map(|to| Piece::Line { to: *to }).collect();

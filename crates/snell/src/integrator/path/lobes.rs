@@ -80,6 +80,8 @@ pub struct Lobes<'a> {
     eta: f64,
     /// The wavelengths go different ways where they are refracted.
     disperses: bool,
+    /// The hero is reflected totally.
+    is_total: bool,
     /// With which probability each lobe is chosen: diffuse, highlight, rough, mirror, reflected, refracted.
     shares: [f64; 6],
 }
@@ -118,7 +120,7 @@ impl<'a> Lobes<'a> {
         let normal = if shading.dot(wo) > 0.0 { shading } else { flat };
         let hidden = colors.one_sided && side < 0.0;
         let [diffuse, specular] = if hidden { [BLACK; 2] } else { [colors.diffuse, colors.specular] };
-        let (mut reflected, mut refracted, mut eta, mut disperses) = (BLACK, BLACK, 1.0, false);
+        let (mut reflected, mut refracted, mut eta, mut disperses, mut of_hero) = (BLACK, BLACK, 1.0, false, false);
         let mut mirror = colors.mirror;
         let cosine = normal.dot(wo).clamp(0.0, 1.0);
         if let Some(metal) = &colors.metal {
@@ -131,6 +133,7 @@ impl<'a> Lobes<'a> {
                 let eta = reflector.before[i] / beyond[i];
                 let share = reflector.share(i, cosine);
                 let is_total = eta * eta * sine_squared >= 1.0 || share >= 1.0;
+                of_hero |= is_total && i == 0;
                 (reflected[i], refracted[i]) = match (fresnel, is_total) {
                     (true, true) => (reflect[i], 0.0),
                     (true, false) => (reflect[i] * share, transmit[i] * (1.0 - share)),
@@ -158,6 +161,7 @@ impl<'a> Lobes<'a> {
             rough,
             eta,
             disperses,
+            is_total: of_hero,
             shares: [0.0; 6],
         };
         lobes.choose();
@@ -191,6 +195,22 @@ impl<'a> Lobes<'a> {
             let factor = (reflected + refracted) / (first + second);
             (self.shares[4], self.shares[5]) = (first * factor, second * factor);
         }
+    }
+
+    /// True at the smooth boundary of a body where the hero meets total internal reflection.
+    #[inline]
+    pub fn is_total(&self) -> bool {
+        self.is_total
+    }
+
+    /// The normal that directions are reckoned with, on the side of `wo`.
+    pub fn normal(&self) -> Vector3 {
+        self.normal
+    }
+
+    /// What a smooth boundary reflects and refracts of the hero, its coefficients in it.
+    pub fn boundary_shares(&self) -> [f64; 2] {
+        [self.reflected[0], self.refracted[0]]
     }
 
     /// True where lights can be asked and light from elsewhere be gathered: where some lobe is not specular.

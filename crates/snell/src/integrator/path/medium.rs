@@ -3,8 +3,8 @@
 //! Distances in media that scatter are chosen by the extinction of one of the path's wavelengths, each as likely as the others, and weighed
 //! by the mean of all densities: Wilkie et al. 2014, section 4. Phase functions are Henyey and Greenstein's.
 
-use snell_math::Ray;
 use snell_math::warp::{exponential, henyey_greenstein, henyey_greenstein_density};
+use snell_math::{Ray, Rgb};
 
 use super::lights::Arriving;
 use super::lobes::about;
@@ -39,6 +39,7 @@ impl Path {
         if is_black(scattering) {
             let left = extinction.map(|coefficient| attenuated(coefficient, distance));
             step.path.throughput = times(step.path.throughput, left);
+            step.tell_travelled(left);
             return false;
         }
         let [choice, u, first, second] = step.path.draw(Purpose::Medium);
@@ -51,11 +52,13 @@ impl Path {
             let left = extinction.map(|coefficient| attenuated(coefficient, distance));
             let probability = over_choices(left);
             step.path.throughput = scaled(times(step.path.throughput, left), 1.0 / probability);
+            step.tell_travelled(left);
             return false;
         }
         let left = extinction.map(|coefficient| attenuated(coefficient, reached));
         let density = over_choices(times(extinction, left));
         step.path.throughput = scaled(times(step.path.throughput, times(scattering, left)), 1.0 / density);
+        step.tell_scattered(reached);
         self.scatter(step, reached, body.anisotropy, [first, second]);
         true
     }
@@ -113,9 +116,13 @@ impl Path {
             }
             return;
         }
-        let left = self.way_to_light(step, way);
-        let question = step.question(way, term, step.path.wavelengths.color(times(value, left)));
-        step.out.answer(&question, !is_black(left));
+        let left = self.way_to_light(step, way, term);
+        let wavelengths = &step.path.wavelengths;
+        let arriving = wavelengths.color(times(value, left));
+        // What would arrive if nothing were in the way is of interest to a watcher alone.
+        let unblocked = if step.out.is_detailed() { wavelengths.color(value) } else { Rgb::BLACK };
+        let question = step.question(way, term, unblocked);
+        step.out.answer(&question, arriving, wavelengths.in_gray(left));
     }
 
     /// The light of a surface whose radiance differs from place to place, over the density of its choice.
@@ -133,7 +140,7 @@ impl Path {
     }
 
     /// What is left of light on a straight way through boundaries that do not bend it; nothing where something is in the way.
-    fn way_to_light<O: Observer>(&self, step: &mut Step<'_, '_, '_, O>, way: WayToLight) -> Spectral {
+    fn way_to_light<O: Observer>(&self, step: &mut Step<'_, '_, '_, O>, way: WayToLight, term: Term) -> Spectral {
         let WayToLight { mut ray, mut distance, mut media } = way;
         let nm = step.path.wavelengths.nm();
         let mut left = WHITE;
@@ -141,18 +148,27 @@ impl Path {
         for _ in 0..MAX_PASSES {
             let hit = step.scene.geometry.intersect(&ray, distance, &mut scratch);
             let way = hit.as_ref().map_or(distance, |hit| hit.t);
-            if let Some(inside) = step.out.media.current(media)
+            let mut absorption = WHITE;
+            let medium = step.out.media.current(media);
+            if let Some(inside) = medium
                 && let Some(body) = self.materials.body(inside.material)
             {
-                left = times(left, body.transmittance(nm, way));
+                absorption = body.transmittance(nm, way);
+                left = times(left, absorption);
             }
-            let Some(hit) = hit else { return left };
+            let Some(hit) = hit else {
+                step.tell_shadow_step(None, medium, absorption, WHITE);
+                return left;
+            };
             let interaction = step.scene.geometry.interaction(&ray, &hit);
             let Some(Boundary::Passed { share, media: behind }) =
                 self.materials.boundary(step.scene, step.out.media, media, &ray, &interaction, nm)
             else {
+                step.tell_shadow_step(Some(&interaction), medium, absorption, BLACK);
                 return BLACK;
             };
+            step.tell_shadow_step(Some(&interaction), medium, absorption, share);
+            step.tell_filtered(term);
             left = times(left, share);
             media = behind;
             let onward = interaction.spawn_ray(ray.direction);

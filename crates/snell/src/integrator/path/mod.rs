@@ -20,6 +20,7 @@ mod reflector;
 mod rough;
 mod sample;
 mod spectra;
+mod watched;
 
 use snell_math::lanes::{Bits, Lanes};
 use snell_math::sampler::Sampler;
@@ -35,7 +36,7 @@ use crate::observe::Observer;
 use crate::task::{Crossing, Cut, MediumStack, RayKind, RayRows, RayTask, ShadowQuestion, Term};
 use emission::{Emission, Targets};
 use lights::Lights;
-use lobes::{Lobes, Transport};
+use lobes::{Lobes, Scattered, Transport};
 use materials::{Boundary, Meeting, PathMaterials};
 use medium::WayToLight;
 pub use photons::{PhotonMap, PhotonPasses};
@@ -168,6 +169,7 @@ impl Path {
     /// One ray of a path, and where it goes on.
     #[inline(never)]
     fn step<O: Observer>(&self, step: &mut Step<'_, '_, '_, O>, interaction: Option<&SurfaceInteraction>) {
+        step.tell_wavelengths();
         let distance = interaction.map_or(f64::INFINITY, |interaction| interaction.t);
         if self.travel(step, distance) {
             return;
@@ -220,11 +222,13 @@ impl Path {
             Some(Boundary::Met(crossing)) => Some(crossing),
             Some(Boundary::Passed { share, media }) => {
                 step.path.throughput = times(step.path.throughput, share);
+                step.note_throughput();
                 step.out.pass(&step.task, interaction.spawn_ray(ray.direction), media);
                 return;
             }
         };
         let bsdf = material.bsdf(&step.scene.textures, interaction);
+        step.tell_surface(&bsdf);
         if !bsdf.emission.is_black() && (!bsdf.one_sided || interaction.is_outward(wo)) {
             self.find_light(step, interaction, bsdf.emission);
         }
@@ -247,7 +251,10 @@ impl Path {
                 step.add(Term::Photons, found);
             }
         }
-        self.go_on(step, interaction, &lobes, crossing);
+        let scattered = self.go_on(step, interaction, &lobes, crossing);
+        if let Some(crossing) = crossing {
+            step.tell_boundary(&colors, &lobes, crossing, scattered.as_ref());
+        }
     }
 
     /// Light that a surface gives off, found by a ray.
@@ -312,16 +319,19 @@ impl Path {
         self.ask(step, &arriving, way, value, Term::Diffuse(self.lights.name(arriving.light)));
     }
 
-    /// Sends the path on from a surface.
+    /// Sends the path on from a surface, and gives the way it goes.
     fn go_on<O: Observer>(
         &self,
         step: &mut Step<'_, '_, '_, O>,
         interaction: &SurfaceInteraction,
         lobes: &Lobes<'_>,
         crossing: Option<Crossing>,
-    ) {
+    ) -> Option<Scattered> {
         let [lobe, u, v, roulette] = step.path.draw(Purpose::Direction);
-        let Some(scattered) = lobes.sample(lobe, [u, v], Transport::Radiance) else { return };
+        let scattered = lobes.sample(lobe, [u, v], Transport::Radiance)?;
+        if lobes.is_total() && scattered.density.is_none() {
+            step.out.total_internal_reflection_of(&step.task);
+        }
         let path = &mut *step.path;
         path.throughput = times(path.throughput, scattered.weight);
         path.compression *= scattered.compression;
@@ -342,6 +352,15 @@ impl Path {
             _ => (RayKind::Reflected, step.task.media),
         };
         step.spawn(kind, interaction.spawn_ray(scattered.wi), media, roulette);
+        Some(scattered)
+    }
+
+    /// What lights are called by whose numbers terms are told apart: see [`Term`].
+    pub fn light_names(&self, scene: &CompiledScene) -> Vec<String> {
+        let of_object = |number: u32| scene.object_names.get(number).unwrap_or_default().into_owned();
+        let surfaces = self.lights.surfaces.iter().map(|emitter| of_object(emitter.place.object));
+        let background = std::iter::once("the background".to_owned());
+        scene.light_names.iter().cloned().chain(surfaces).chain(background).collect()
     }
 }
 
@@ -375,6 +394,7 @@ impl<O: Observer> Step<'_, '_, '_, O> {
             }
             path.throughput = scaled(path.throughput, 1.0 / survival);
         }
+        self.note_throughput();
         self.out.send(&self.task, kind, ray, media);
     }
 

@@ -70,9 +70,9 @@ pub struct PhotonMap {
 pub struct PhotonPasses {
     count: u32,
     seed: u32,
-    pass: u32,
-    /// Of the next pass; unknown before the first.
-    radius: Option<f64>,
+    next: u32,
+    /// Of the first pass; unknown before a pass was made.
+    first_radius: Option<f64>,
 }
 
 impl PhotonPasses {
@@ -80,20 +80,33 @@ impl PhotonPasses {
     pub fn new(path: &Path, seed: u32, pixels: u64) -> Option<Self> {
         path.emission.as_ref()?;
         let count = (pixels / 4).clamp(u64::from(PORTION), 1 << 20) as u32;
-        Some(Self { count, seed, pass: 0, radius: None })
+        Some(Self { count, seed, next: 0, first_radius: None })
     }
 
     /// The photons of the next pass.
     pub fn next(&mut self, path: &Path, scene: &CompiledScene) -> Option<PhotonMap> {
+        self.next += 1;
+        self.of_pass(self.next - 1, path, scene)
+    }
+
+    /// The photons of any pass: those that [`Self::next`] gives in its turn.
+    pub fn of_pass(&mut self, number: u32, path: &Path, scene: &CompiledScene) -> Option<PhotonMap> {
         let emission = path.emission.as_ref()?;
-        let [u, ..] = Sampler::new(self.seed, [u32::MAX, 0], self.pass).set(0);
-        let wavelengths = Wavelengths::sample(u);
-        let pass = Pass { path, scene, emission, wavelengths, seed: self.seed, number: self.pass };
-        let photons = pass.trace(self.count);
-        let radius = *self.radius.get_or_insert_with(|| first_radius(path, &photons));
-        let step = f64::from(self.pass + 1);
-        self.pass += 1;
-        self.radius = Some(radius * ((step + ALPHA - 1.0).max(ALPHA) / step).sqrt());
+        let pass = |number: u32| {
+            let [u, ..] = Sampler::new(self.seed, [u32::MAX, 0], number).set(0);
+            Pass { path, scene, emission, wavelengths: Wavelengths::sample(u), seed: self.seed, number }
+        };
+        let photons = pass(number).trace(self.count);
+        let first = match (self.first_radius, number) {
+            (Some(first), _) => first,
+            (None, 0) => first_radius(path, &photons),
+            (None, _) => first_radius(path, &pass(0).trace(self.count)),
+        };
+        let wavelengths = pass(number).wavelengths;
+        self.first_radius = Some(first);
+        let radius = (1..=number)
+            .map(f64::from)
+            .fold(first, |radius, step| radius * ((step + ALPHA - 1.0).max(ALPHA) / step).sqrt());
         Some(PhotonMap::new(photons, radius, self.count, wavelengths))
     }
 }

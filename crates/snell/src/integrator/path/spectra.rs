@@ -231,6 +231,11 @@ impl Wavelengths {
         }
     }
 
+    /// Shares of light as one number, the mean of the wavelengths that are carried, in all components: what a watcher is told.
+    pub fn in_gray(&self, shares: Spectral) -> Rgb {
+        Rgb::gray(if self.is_hero_alone() { shares[0] } else { mean(shares) } as f32)
+    }
+
     /// The colour that values have in expectation.
     #[inline]
     pub fn color(&self, values: Spectral) -> Rgb {

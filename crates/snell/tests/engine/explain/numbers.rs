@@ -11,7 +11,7 @@ const EXACT: f64 = 1e-12;
 
 fn told(stage: &Stage, origin: [f64; 3], direction: [f64; 3]) -> Explanation {
     let ray = Ray::new(Point3::from(origin), Vector3::from(direction));
-    explain(&stage.scene, &stage.settings, Subject::Ray(ray)).expect("a camera")
+    explain(&stage.scene, &stage.settings, Subject::Ray(ray, 0)).expect("a camera")
 }
 
 /// The rays that go straight through: the first, then the refracted child of each in turn.

@@ -3,7 +3,7 @@
 use snell::explain::{Found, MapError, Phenomenon, Property, SEVEN_RAYS, find, map};
 use snell::math::Rgb;
 use snell::observe::RayTree;
-use snell::render::{NoProgress, explain};
+use snell::render::{NoProgress, Watch, explain};
 use snell::scene::scene::Antialiasing;
 use snell::task::{RayKind, Term};
 use snell_testkit::must_fail;
@@ -15,10 +15,14 @@ fn tree(stage: &Stage, pixel: [u32; 2]) -> RayTree {
     explain(&stage.scene, &stage.settings, pixel, 0).expect("a camera")
 }
 
+fn watch(stage: &Stage) -> Watch<'_> {
+    Watch::new(&stage.scene, &stage.settings).expect("a camera")
+}
+
 /// Asserts that a map is what a function says of each pixel's tree.
 fn maps(stage: &Stage, name: &str, expected: impl Fn(&RayTree) -> f32) {
     let property: Property = name.parse().expect("a name");
-    let values = map(&stage.scene, &stage.settings, &property, &NoProgress).expect("a map");
+    let values = map(&mut watch(stage), &property, &NoProgress).expect("a map");
     for [x, y] in stage.pixels() {
         let (value, expected) = (*values.get(x, y).expect("a pixel"), expected(&tree(stage, [x, y])));
         assert!((value - expected).abs() <= 1e-5, "{name} at {x}, {y}: {value}, expected {expected}");
@@ -86,7 +90,7 @@ fn maps_do_not_depend_on_threads() {
     let stage = stage("lens", Antialiasing::Samples(3));
     let values = |threads: usize| {
         let pool = rayon_pool(threads);
-        pool.install(|| map(&stage.scene, &stage.settings, &Property::Rays, &NoProgress).expect("a map"))
+        pool.install(|| map(&mut watch(&stage), &Property::Rays, &NoProgress).expect("a map"))
     };
     assert_eq!(values(1).pixels(), values(3).pixels());
 }
@@ -105,7 +109,7 @@ fn names_that_mean_nothing_are_told() {
     }
     let stage = stage("seven-rays", Antialiasing::None);
     let property = "share:object=bord".parse().expect("a name");
-    let error = map(&stage.scene, &stage.settings, &property, &NoProgress).expect_err("no such object");
+    let error = map(&mut watch(&stage), &property, &NoProgress).expect_err("no such object");
     assert_eq!(error, MapError::NoObject("bord".to_owned()));
 }
 
@@ -122,8 +126,7 @@ fn shows(stage: &Stage, phenomenon: &Phenomenon, found: &[Found], is_shown: impl
 
 #[test]
 fn what_is_found_is_there() {
-    let look =
-        |stage: &Stage, phenomenon: &Phenomenon| find(&stage.scene, &stage.settings, phenomenon, 4).expect("a camera");
+    let look = |stage: &Stage, phenomenon: &Phenomenon| find(&mut watch(stage), phenomenon, 4);
     let seven = Stage::of(&crate::files::scene_of_file("scenes/seven-rays.toml")).sized(160, 120);
     for phenomenon in &SEVEN_RAYS {
         shows(&seven, phenomenon, &look(&seven, phenomenon), |_| true);
@@ -147,6 +150,6 @@ fn what_is_found_is_there() {
 #[test]
 fn large_pictures_are_searched_on_a_grid_first() {
     let stage = Stage::of(&crate::files::scene_of_file("scenes/seven-rays.toml")).sized(700, 525);
-    let found = find(&stage.scene, &stage.settings, &Phenomenon::InsideHighlight, 2).expect("a camera");
+    let found = find(&mut watch(&stage), &Phenomenon::InsideHighlight, 2);
     shows(&stage, &Phenomenon::InsideHighlight, &found, |_| true);
 }
