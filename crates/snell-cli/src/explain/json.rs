@@ -169,6 +169,7 @@ fn end(end: End) -> &'static str {
         End::DepthLimit => "depth-limit",
         End::TooLittleWeight => "too-little-weight",
         End::TooManyRays => "too-many-rays",
+        End::Chance => "chance",
     }
 }
 

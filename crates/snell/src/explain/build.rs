@@ -73,6 +73,7 @@ impl Sample<'_, '_> {
                     Cut::Depth => End::DepthLimit,
                     Cut::Weight => End::TooLittleWeight,
                     Cut::Number => End::TooManyRays,
+                    Cut::Chance => End::Chance,
                 };
                 let told = ExplainedRay {
                     kind: kind(cut.kind),

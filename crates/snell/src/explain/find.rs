@@ -11,7 +11,7 @@ use snell_math::Rgb;
 use crate::compile::CompiledScene;
 use crate::observe::{AnsweredShadow, RayTree, Share, TracedRay};
 use crate::render::{RenderSettings, Watch};
-use crate::task::{RayKind, Term};
+use crate::task::{Cut, RayKind, Term};
 use crate::trace::Scratch;
 
 /// How many pixels of a large picture are looked at in the first round.
@@ -258,7 +258,10 @@ impl Look<'_> {
                 .filter(|ray| object(ray).is_some())
                 .map(|ray| weight(ray.task.throughput) * (1.0 - luminance(ray.transmittance)))
                 .fold(0.0, f64::max),
-            Phenomenon::Cut => rays.iter().flat_map(|ray| &ray.cuts).map(|cut| weight(cut.weight)).sum(),
+            Phenomenon::Cut => {
+                let cuts = rays.iter().flat_map(|ray| &ray.cuts).filter(|cut| cut.why != Cut::Chance);
+                cuts.map(|cut| weight(cut.weight)).sum()
+            }
             Phenomenon::Depth(depth) => {
                 let of_depth = rays.iter().filter(|ray| u32::from(ray.task.depth) == *depth);
                 of_depth

@@ -108,6 +108,8 @@ pub enum End {
     TooLittleWeight,
     /// It was not followed: its sample had too many rays already.
     TooManyRays,
+    /// It was not followed by chance: paths that carry little end so, and those that go on carry more instead.
+    Chance,
 }
 
 /// What a ray goes through.

@@ -21,6 +21,9 @@ pub fn sentence(ray: &ExplainedRay) -> String {
         (_, End::TooLittleWeight) => {
             format!("is not followed: {} of its sample is too little", percents(ray.throughput))
         }
+        (_, End::Chance) => {
+            format!("is not followed, by chance: of many that carry {} some go on, with more", percents(ray.throughput))
+        }
         (_, End::TooManyRays) => "is not followed: its sample has too many rays".to_owned(),
         (None, End::Blocked | End::Light) => arrival(ray),
         (None, End::Scattered) => {

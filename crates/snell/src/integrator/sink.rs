@@ -347,9 +347,13 @@ impl<O: Observer> Sink<'_, O> {
         self.observer.ray(&task);
     }
 
-    /// Tells that a path was not followed, and what it carried.
-    pub fn cut_path(&mut self, task: &RayTask, why: Cut, weight: Rgb) {
-        self.cut(task.id, task.kind, why, weight);
+    /// Tells that a path was not followed by a ray of a kind, and what it carried.
+    pub fn cut_path(&mut self, task: &RayTask, kind: RayKind, why: Cut, weight: Rgb) {
+        match why {
+            // Others that go on stand for it: nothing is lost.
+            Cut::Chance => self.observer.cut(task.id, kind, why, weight),
+            Cut::Depth | Cut::Weight | Cut::Number => self.cut(task.id, kind, why, weight),
+        }
     }
 
     /// As [`Sink::ask`], of a question whose answer is known: what arrives of its first term, and which part of the light that is.

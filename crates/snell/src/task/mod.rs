@@ -102,4 +102,6 @@ pub enum Cut {
     Weight,
     /// Its sample had too many rays already.
     Number,
+    /// A path ended by chance: those that go on carry more instead.
+    Chance,
 }

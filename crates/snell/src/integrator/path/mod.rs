@@ -384,12 +384,16 @@ impl<O: Observer> Step<'_, '_, '_, O> {
         }
         if self.task.depth >= self.out.depth() {
             let lost = wavelengths.color(times(path.throughput, wavelengths.white));
-            self.out.cut_path(&self.task, Cut::Depth, lost);
+            self.out.cut_path(&self.task, kind, Cut::Depth, lost);
             return;
         }
         if self.task.depth >= ROULETTE_DEPTH {
             let survival = (carried * path.compression).min(1.0);
             if roulette >= survival {
+                if self.out.is_detailed() {
+                    let carried = wavelengths.color(times(path.throughput, wavelengths.white));
+                    self.out.cut_path(&self.task, kind, Cut::Chance, carried);
+                }
                 return;
             }
             path.throughput = scaled(path.throughput, 1.0 / survival);

@@ -54,6 +54,7 @@ fn terms_of_paths_add_up_to_the_pixel() {
     }
     assert!(rays().any(|ray| ray.kind == Kind::Refracted && ray.wavelength_nm.is_some()), "light was split");
     assert!(rays().any(|ray| ray.kind == Kind::Refracted && ray.wavelength_nm.is_none()), "and was not");
+    assert!(rays().any(|ray| ray.end == End::Chance && ray.kind != Kind::Camera), "a path ended by chance");
     must_fail("a share is lost", || {
         terms_add_up("caustic", |told| {
             told.terms.remove(0);
