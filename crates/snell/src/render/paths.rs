@@ -131,7 +131,8 @@ impl CameraRays for PathRays<'_> {
             let number = (first + lane).min(self.pixels.len() - 1);
             let (Pixel { x, y }, [dx, dy, ..]) = (self.pixels[number], self.places[number]);
             (xs[lane], ys[lane]) = (f64::from(x) + dx, f64::from(y) + dy);
-            split[at + lane] = 0;
+            // The number of its path.
+            split[at + lane] = number as u32;
         }
         if self.camera.has_lens() {
             for lane in 0..L::COUNT {

@@ -177,14 +177,15 @@ impl<'a> Watch<'a> {
     /// Traces a ray as if it came from the camera, with the random numbers of that sample of the first pixel; its direction has unit
     /// length. The watch is [ready](Self::ready) for the sample.
     pub fn ray<O: Observer>(&self, ray: Ray, number: u32, scratch: &mut Scratch, observer: &mut O) -> Rgb {
-        let rays = [(ray, split_place([0, 0], number))];
         let mut statistics = Statistics::default();
         match &self.engine {
             Engine::Whitted(integrator) => {
+                let rays = [(ray, split_place([0, 0], number))];
                 self.job(integrator).tracer().trace(rays.as_slice(), scratch, &mut statistics, observer, None)[0]
             }
             Engine::Path(paths) => {
                 let mut state = vec![paths.begin([0, 0], number)];
+                let rays = [(ray, 0)];
                 let tracer = self.job(&paths.integrator);
                 let tracer = tracer.path_tracer(&paths.settings);
                 tracer.trace_with(rays.as_slice(), &mut state, scratch, &mut statistics, observer, None)[0]

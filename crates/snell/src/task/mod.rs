@@ -34,7 +34,8 @@ pub struct RayTask {
     pub kind: RayKind,
     /// The wavelength band it carries, or all light.
     pub band: Option<Band>,
-    /// Samples of a pixel, and of neighbouring pixels, split white light at different places: the number of this one's.
+    /// Samples of a pixel, and of neighbouring pixels, split white light at different places: the number of this one's. Of paths, the
+    /// number of its own.
     pub split: u32,
 }
 

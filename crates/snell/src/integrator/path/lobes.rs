@@ -184,9 +184,8 @@ impl<'a> Lobes<'a> {
         self.shares = if sum > 0.0 { albedos.map(|albedo| albedo / sum) } else { [0.0; 6] };
     }
 
-    /// Chooses between what a boundary reflects and what it lets through by the roots of their shares: for paths straight from the
-    /// eye, where the picture of a lamp in a glass ball is worth more samples than its twenty-fifth of the light. Those after a turn must
-    /// choose as photons do.
+    /// Chooses between what a boundary reflects and what it lets through by the roots of their shares: for paths straight from the eye that do not
+    /// go both ways. Those after a turn must choose as photons do.
     #[inline]
     pub fn favour_the_weaker(&mut self) {
         let [.., reflected, refracted] = self.shares;
@@ -195,6 +194,17 @@ impl<'a> Lobes<'a> {
             let factor = (reflected + refracted) / (first + second);
             (self.shares[4], self.shares[5]) = (first * factor, second * factor);
         }
+    }
+
+    /// Both ways that light takes at a smooth boundary, reflected and refracted, with all that goes there; `None` where there is but one, or where
+    /// other lobes are.
+    #[inline]
+    pub fn both_ways(&self) -> Option<[Scattered; 2]> {
+        let [others @ .., reflected, refracted] = self.shares;
+        if reflected == 0.0 || refracted == 0.0 || others != [0.0; 4] {
+            return None;
+        }
+        Some([self.reflect(self.reflected, 1.0)?, self.refract(1.0, Transport::Radiance)?])
     }
 
     /// True at the smooth boundary of a body where the hero meets total internal reflection.
@@ -295,7 +305,7 @@ impl<'a> Lobes<'a> {
             let (color, share) = if rest < mirror { (self.mirror, mirror) } else { (self.reflected, reflected) };
             return self.reflect(color, share);
         }
-        if refracted > 0.0 { self.refract(transport) } else { None }
+        if refracted > 0.0 { self.refract(refracted, transport) } else { None }
     }
 
     fn is_hero_alone(&self) -> bool {
@@ -320,7 +330,7 @@ impl<'a> Lobes<'a> {
         Some(Scattered { wi, weight, density: None, crosses: false, hero_alone: false, compression: 1.0 })
     }
 
-    fn refract(&self, transport: Transport) -> Option<Scattered> {
+    fn refract(&self, share: f64, transport: Transport) -> Option<Scattered> {
         let mut wi = refract(self.wo, Normal3::from(self.normal), self.eta)?;
         if self.flat.dot(wi) >= 0.0 {
             wi = refract(self.wo, Normal3::from(self.flat), self.eta)?;
@@ -330,7 +340,7 @@ impl<'a> Lobes<'a> {
             Transport::Radiance => 1.0 / compression,
             Transport::Power => 1.0,
         };
-        let weight = scaled(self.refracted, factor / self.shares[5]);
+        let weight = scaled(self.refracted, factor / share);
         Some(Scattered { wi, weight, density: None, crosses: true, hero_alone: self.disperses, compression })
     }
 }

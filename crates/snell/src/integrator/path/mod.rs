@@ -47,6 +47,11 @@ use spectra::{Colors, Spectral, largest, scaled, times};
 
 /// From this depth on paths end by chance, the likelier the less they carry.
 const ROULETTE_DEPTH: u16 = 4;
+/// Straight from the eye only if they carry less than one over this.
+const STRAIGHT_PATIENCE: f64 = 64.0;
+
+/// A path divides where both ways carry more than this.
+const LEAST_DIVIDED: f64 = 1.0 / 256.0;
 
 /// Path tracing.
 #[derive(Debug)]
@@ -133,10 +138,15 @@ struct Step<'a, 'b, 's, O> {
     scene: &'a CompiledScene,
     task: RayTask,
     path: &'b mut PathSample,
+    /// A path that leaves it here.
+    born: Option<PathSample>,
+    /// The number that such a one has.
+    next_path: u32,
     out: &'b mut Sink<'s, O>,
 }
 
 impl Integrator for Path {
+    /// The paths by their numbers, which rays have as [`RayTask::split`]: first one of each sample, then those that left others.
     type State = Vec<PathSample>;
 
     #[inline(always)]
@@ -159,8 +169,13 @@ impl Integrator for Path {
             let interaction = met.has(lane).then(|| scene.geometry.interaction_of(hits, surfaces, at + lane));
             let task = rays.task(at + lane);
             out.met(&task, interaction.as_ref());
-            let path = &mut state[task.sample as usize];
-            self.step(&mut Step { scene, task, path, out }, interaction.as_ref());
+            let next_path = state.len() as u32;
+            let path = &mut state[task.split as usize];
+            let mut step = Step { scene, task, path, born: None, next_path, out };
+            self.step(&mut step, interaction.as_ref());
+            if let Some(born) = step.born {
+                state.push(born);
+            }
         }
     }
 }
@@ -241,7 +256,7 @@ impl Path {
         };
         let colors = self.materials.colors(&self.colors, number, &bsdf, &meeting);
         let mut lobes = Lobes::new(&colors, interaction, wo);
-        if step.path.scattered.is_none() && step.path.specular == 0 {
+        if step.path.is_straight() {
             lobes.favour_the_weaker();
         }
         if lobes.is_lit() {
@@ -328,10 +343,36 @@ impl Path {
         crossing: Option<Crossing>,
     ) -> Option<Scattered> {
         let [lobe, u, v, roulette] = step.path.draw(Purpose::Direction);
+        if step.path.divides()
+            && let Some([reflected, refracted]) = lobes.both_ways()
+            && [&reflected, &refracted].iter().all(|way| step.path.would_carry(way.weight) > LEAST_DIVIDED)
+        {
+            let mut other = step.path.divide();
+            self.send_on(step, interaction, (lobes, crossing), &refracted, roulette);
+            let Step { scene, next_path, .. } = *step;
+            let task = RayTask { split: next_path, ..step.task };
+            let mut second = Step { scene, task, path: &mut other, born: None, next_path, out: &mut *step.out };
+            self.send_on(&mut second, interaction, (lobes, crossing), &reflected, roulette);
+            step.born = Some(other);
+            return Some(refracted);
+        }
         let scattered = lobes.sample(lobe, [u, v], Transport::Radiance)?;
         if lobes.is_total() && scattered.density.is_none() {
             step.out.total_internal_reflection_of(&step.task);
         }
+        self.send_on(step, interaction, (lobes, crossing), &scattered, roulette);
+        Some(scattered)
+    }
+
+    /// Sends the path on in a direction from a surface.
+    fn send_on<O: Observer>(
+        &self,
+        step: &mut Step<'_, '_, '_, O>,
+        interaction: &SurfaceInteraction,
+        (lobes, crossing): (&Lobes<'_>, Option<Crossing>),
+        scattered: &Scattered,
+        roulette: f64,
+    ) {
         let path = &mut *step.path;
         path.throughput = times(path.throughput, scattered.weight);
         path.compression *= scattered.compression;
@@ -352,7 +393,6 @@ impl Path {
             _ => (RayKind::Reflected, step.task.media),
         };
         step.spawn(kind, interaction.spawn_ray(scattered.wi), media, roulette);
-        Some(scattered)
     }
 
     /// What lights are called by whose numbers terms are told apart: see [`Term`].
@@ -388,7 +428,9 @@ impl<O: Observer> Step<'_, '_, '_, O> {
             return;
         }
         if self.task.depth >= ROULETTE_DEPTH {
-            let survival = (carried * path.compression).min(1.0);
+            // What is seen straight through glass has no noise but that of chance: few samples are to end before it is found.
+            let patience = if path.is_straight() { STRAIGHT_PATIENCE } else { 1.0 };
+            let survival = (carried * path.compression * patience).min(1.0);
             if roulette >= survival {
                 if self.out.is_detailed() {
                     let carried = wavelengths.color(times(path.throughput, wavelengths.white));

@@ -3,9 +3,9 @@
 use snell_math::Point3;
 use snell_math::sampler::Sampler;
 
-use super::spectra::{Spectral, WHITE, Wavelengths};
+use super::spectra::{Spectral, WHITE, Wavelengths, largest, times};
 
-/// One path, of one sample of a pixel.
+/// One path, of one sample of a pixel: the one that the sample begins with, or one that [left it](PathSample::divide).
 #[derive(Clone, Copy, Debug)]
 pub struct PathSample {
     /// Its random numbers; see [`Purpose`] for which set serves what.
@@ -20,6 +20,8 @@ pub struct PathSample {
     pub scattered: Option<Vertex>,
     /// How many specular surfaces it met since then.
     pub specular: u32,
+    /// How often it divided.
+    pub divisions: u32,
     /// How often it was scattered or reflected or refracted: which random numbers come next.
     pub events: u32,
 }
@@ -36,6 +38,11 @@ pub struct Vertex {
     /// Photons are gathered there.
     pub gathers: bool,
 }
+
+/// So often a path divides: into the reflection of a ball, and what is seen through it, and what is reflected inside.
+const MOST_DIVISIONS: u32 = 4;
+/// The events of paths that leave others are counted from multiples of this: more than a path has.
+const OTHER_NUMBERS: u32 = 1 << 24;
 
 /// What random numbers are for: sets of four dimensions.
 #[derive(Clone, Copy, Debug)]
@@ -68,7 +75,38 @@ impl Purpose {
 impl PathSample {
     /// A path that begins at the camera.
     pub fn new(sampler: Sampler, wavelengths: Wavelengths) -> Self {
-        Self { sampler, wavelengths, throughput: WHITE, compression: 1.0, scattered: None, specular: 0, events: 0 }
+        Self {
+            sampler,
+            wavelengths,
+            throughput: WHITE,
+            compression: 1.0,
+            scattered: None,
+            specular: 0,
+            divisions: 0,
+            events: 0,
+        }
+    }
+
+    /// True straight from the eye: where nothing but specular surfaces has sent it on.
+    pub fn is_straight(&self) -> bool {
+        self.scattered.is_none()
+    }
+
+    /// True while it goes both ways at a boundary that reflects some light and lets some through: straight from the eye, so that the picture of a
+    /// lamp in a glass ball, a twenty-fifth of the light, has no noise of its own.
+    pub fn divides(&self) -> bool {
+        self.is_straight() && self.divisions < MOST_DIVISIONS
+    }
+
+    /// What it would carry after it is weighed once more, the largest of the wavelengths.
+    pub fn would_carry(&self, weight: Spectral) -> f64 {
+        largest(times(self.throughput, weight)) * self.compression
+    }
+
+    /// Divides it: the path that is given goes another way, with other random numbers.
+    pub fn divide(&mut self) -> Self {
+        self.divisions += 1;
+        Self { events: self.events + (OTHER_NUMBERS << self.divisions), ..*self }
     }
 
     /// Four random numbers.
