@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use snell::compile::CompiledScene;
-use snell::render::{PathSettings, RenderSettings, Rendering, render, render_paths};
+use snell::render::{PathSettings, RenderSettings, Rendering, render, render_paths, warnings};
 use snell::scene::reader::nff;
 use snell::scene::{Diagnostic, Diagnostics, Scene};
 use snell::statistics::SamplePlace;
@@ -56,6 +56,7 @@ pub fn run(arguments: &RenderArguments, mut watch: Stopwatch) -> Result<u8, Fail
     let paths = paths::settings(&arguments.paths, &arguments.picture, &scene, &flags)?;
     let paths = paths.map(|paths| until(paths, arguments));
     drop(scene);
+    told.list.extend(warnings(&compiled, paths.as_ref()));
     diagnostics::print(&told);
     let build = watch.lap();
 
@@ -87,7 +88,7 @@ pub fn run(arguments: &RenderArguments, mut watch: Stopwatch) -> Result<u8, Fail
     let write = watch.lap();
 
     let counted = Diagnostics {
-        list: advice(&rendering.statistics, &settings, &replay(arguments, &place, &rendering)),
+        list: advice(&rendering.statistics, &settings, paths.as_ref(), &replay(arguments, &place, &rendering)),
         ..Diagnostics::default()
     };
     diagnostics::print(&counted);

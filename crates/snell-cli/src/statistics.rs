@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 use snell::compile::SceneSize;
-use snell::render::RenderSettings;
+use snell::render::{PathSettings, RenderSettings};
 use snell::scene::Diagnostic;
 use snell::statistics::Statistics;
 
@@ -117,7 +117,12 @@ fn seconds(duration: Duration) -> f64 {
 }
 
 /// What a user should know about the counts, and what to do; `replay` is the command that explains the first sample that is no number.
-pub fn advice(statistics: &Statistics, settings: &RenderSettings, replay: &str) -> Vec<Diagnostic> {
+pub fn advice(
+    statistics: &Statistics,
+    settings: &RenderSettings,
+    paths: Option<&PathSettings>,
+    replay: &str,
+) -> Vec<Diagnostic> {
     let mut list = Vec::new();
     let cut = statistics.cut_weight();
     if cut > TOLERATED_CUT {
@@ -125,9 +130,10 @@ pub fn advice(statistics: &Statistics, settings: &RenderSettings, replay: &str) 
             "up to {:.1} % of the picture's light is missing: rays were not followed to their end",
             cut * 100.0
         );
-        // Rays that could have been deeper were cut for their weight.
-        let help = if statistics.max_depth >= u32::from(settings.depth) {
-            format!("use --depth {} or more, at the price of time", u32::from(settings.depth) * 2)
+        // Rays that could have been deeper were cut for their weight, which paths are not.
+        let depth = u32::from(paths.map_or(settings.depth, |paths| paths.depth));
+        let help = if paths.is_some() || statistics.max_depth >= depth {
+            format!("use --depth {} or more, at the price of time", depth * 2)
         } else {
             format!("use a --min-weight below {}, at the price of time", settings.min_weight)
         };
@@ -202,13 +208,13 @@ mod tests {
         let mut statistics = Statistics::default();
         (statistics.camera_rays, statistics.max_depth) = (100, 5);
         statistics.add_cut_weight(Rgb::WHITE);
-        assert!(advice(&statistics, &settings, "snell explain a").is_empty());
+        assert!(advice(&statistics, &settings, None, "snell explain a").is_empty());
         statistics.add_cut_weight(Rgb::WHITE);
-        let list = advice(&statistics, &settings, "snell explain a");
+        let list = advice(&statistics, &settings, None, "snell explain a");
         assert!(list[0].message.starts_with("up to 2.0 %"), "{list:?}");
         assert!(list[0].help.as_ref().is_some_and(|help| help.contains("--depth 10")), "{list:?}");
         statistics.max_depth = 4;
-        let list = advice(&statistics, &settings, "snell explain a");
+        let list = advice(&statistics, &settings, None, "snell explain a");
         assert!(list[0].help.as_ref().is_some_and(|help| help.contains("--min-weight")), "{list:?}");
     }
 
@@ -217,7 +223,7 @@ mod tests {
         let settings = RenderSettings::from(&Settings::default());
         let mut statistics = Statistics::default();
         (statistics.camera_rays, statistics.nonfinite_samples) = (1, 1);
-        let list = advice(&statistics, &settings, "snell explain a");
+        let list = advice(&statistics, &settings, None, "snell explain a");
         assert!(list[0].help.as_ref().is_some_and(|help| help.contains("`snell explain a`")), "{list:?}");
     }
 

@@ -34,11 +34,36 @@ fn options_of_the_other_integrator_are_refused() {
         ("render lens --samples 4", "--samples is for path tracing"),
         ("render lens --noise 0.1", "--noise is for path tracing"),
         ("render lens --integrator path --aa 4", "--aa is for `whitted`"),
-        ("render caustic --map depth", "--map is for `whitted`"),
+        ("render caustic --map depth --noise 0.1", "--noise ends pictures, not maps"),
         ("render caustic --wavelength 500", "--wavelength is for `whitted`"),
     ] {
         let run = folder.run(line);
         assert!(run.code == Some(2) && run.stderr.contains(told), "{run:?}");
     }
     assert!(folder.names().is_empty(), "{:?}", folder.names());
+}
+
+#[test]
+fn light_that_will_be_missing_is_told() {
+    let folder = Folder::new();
+    folder.write("lamp.toml", "ambient = 0\n[[object]]\nsphere = {}\nmaterial = { emission = 1 }\n");
+    folder.write(
+        "milk.toml",
+        "[[light]]\nname = \"key\"\npoint = { position = [0, 5, 0] }\n\
+         [[object]]\nsphere = {}\nmaterial = { dielectric = { ior = 1.3, scattering = { distance = 0.2 } } }\n",
+    );
+    let options = "--width 8 --quiet -o a.png";
+    for (line, told) in [
+        ("render lamp.toml", "light nothing by `whitted`"),
+        ("render lens --integrator path --samples 1 --no-photons", "does not come through glass"),
+        ("render milk.toml --integrator path --samples 1", "light of key does not come into"),
+    ] {
+        let run = folder.good(&format!("{line} {options}"));
+        assert!(run.stderr.contains(told), "{run:?}");
+    }
+    for line in ["render lamp.toml --integrator path", "render lens --integrator path", "render milk.toml"] {
+        let samples = if line.contains("path") { " --samples 1" } else { "" };
+        let run = folder.good(&format!("{line}{samples} {options}"));
+        assert!(!run.stderr.contains("warning"), "{run:?}");
+    }
 }

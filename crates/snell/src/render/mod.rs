@@ -10,6 +10,7 @@ mod paths;
 mod settings;
 #[cfg(test)]
 mod tests;
+mod warnings;
 mod watch;
 
 use std::sync::Mutex;
@@ -21,6 +22,7 @@ use snell_math::{Ray, Rgb, sampling};
 
 pub use paths::{DARK, PathSettings, render_paths};
 pub use settings::RenderSettings;
+pub use warnings::warnings;
 pub use watch::{Watch, explain, explain_path};
 
 use crate::camera::Camera;
