@@ -56,12 +56,14 @@ fn light_that_will_be_missing_is_told() {
     for (line, told) in [
         ("render lamp.toml", "light nothing by `whitted`"),
         ("render lens --integrator path --samples 1 --no-photons", "does not come through glass"),
-        ("render milk.toml --integrator path --samples 1", "light of key does not come into"),
+        ("render milk.toml --integrator path --samples 1 --no-photons", "light of key does not come through glass"),
     ] {
         let run = folder.good(&format!("{line} {options}"));
         assert!(run.stderr.contains(told), "{run:?}");
     }
-    for line in ["render lamp.toml --integrator path", "render lens --integrator path", "render milk.toml"] {
+    for line in
+        ["render lamp.toml --integrator path", "render lens --integrator path", "render milk.toml --integrator path"]
+    {
         let samples = if line.contains("path") { " --samples 1" } else { "" };
         let run = folder.good(&format!("{line}{samples} {options}"));
         assert!(!run.stderr.contains("warning"), "{run:?}");

@@ -53,16 +53,5 @@ pub fn warnings(scene: &CompiledScene, paths: Option<&PathSettings>) -> Vec<Diag
         let help = "leave --no-photons out: a light without extent is met by no path";
         list.push(Diagnostic::warning(message).help(help));
     }
-    let milky = scene.materials.iter().zip(&scene.material_names).find(|(material, _)| {
-        let body = material.body.as_ref().filter(|body| body.bends_light());
-        body.is_some_and(|body| !body.medium.scattering.is_black())
-    });
-    if let Some((_, milk)) = milky {
-        let message = format!(
-            "light of {names} does not come into {milk}: its boundary bends light, and no path meets a point behind it"
-        );
-        let help = "give it a lamp with extent (an object with `emission`, or `angle` for a directional light)";
-        list.push(Diagnostic::warning(message).help(help));
-    }
     list
 }

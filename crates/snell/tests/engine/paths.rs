@@ -267,6 +267,56 @@ fn photons_and_paths_agree() {
     must_fail("another scene", || assert_near(other, f64::from(without_mean.g), tolerance));
 }
 
+/// A milky ball in a lamp's light: what is inside is lit by refraction alone.
+fn milk(light: &str) -> Stage {
+    let text = format!(
+        r#"
+        [camera]
+        eye = [0, 2, 4]
+        look_at = [0, 0, 0]
+        fov = 30
+        [material.lamp]
+        emission = 4
+        [material.milk]
+        dielectric = {{ ior = 1.3, scattering = {{ distance = 0.4, color = [0.5, 0.7, 0.9], anisotropy = 0.3 }} }}
+        [[object]]
+        sphere = {{ radius = 1 }}
+        material = "milk"
+        {light}
+    "#
+    );
+    Stage::new(&text).sized(32, 24)
+}
+
+#[test]
+fn photons_and_paths_agree_in_a_medium() {
+    // Small enough for photons, large enough for paths. Balls that photons are gathered from reach beyond the surface, where there are none:
+    // less so the smaller a pixel is.
+    let stage = milk("[[object]]\nsphere = { center = [-2, 3, 0], radius = 0.2 }\nmaterial = 'lamp'").sized(160, 120);
+    let with = mean(&trace(&stage, &samples(64))).0;
+    let without = mean(&trace(&stage, &PathSettings { photons: false, ..samples(192) })).0;
+    let near = |factor: f32| assert!((with.g * factor - without.g).abs() < 0.04 * without.g, "{with:?} {without:?}");
+    near(1.0);
+    must_fail("a tenth is missing", || near(0.9));
+}
+
+#[test]
+fn a_point_lights_the_inside_of_milk_as_a_small_ball_does() {
+    // A ball of radiance L and radius r has the intensity π r² L; the lecture's is π times less.
+    let point = milk("[[light]]\npoint = { position = [-2, 3, 0], intensity = 4.0, falloff = 'inverse-square' }");
+    let ball = milk("[[object]]\nsphere = { center = [-2, 3, 0], radius = 0.05 }\nmaterial = { emission = 1600 }");
+    let dark = PathSettings { photons: false, ..samples(16) };
+    let (point_image, ball_image) = (trace(&point, &samples(128)), trace(&ball, &samples(128)));
+    // In the ball's middle, where nothing mirrors the light.
+    let middle = |image: &Image<Rgb>| {
+        let pixels = (8..16).flat_map(|y| (12..20).map(move |x| [x, y]));
+        pixels.map(|[x, y]| f64::from(image.get(x, y).expect("a pixel").g)).sum::<f64>() / 64.0
+    };
+    let (found, expected) = (middle(&point_image), middle(&ball_image));
+    assert!((found - expected).abs() < 0.03 * expected, "{found} {expected}");
+    assert!(middle(&trace(&point, &dark)) < 1e-9, "no path meets a point");
+}
+
 #[test]
 fn no_thread_tile_or_instruction_changes_a_bit() {
     let stage = caustic();

@@ -107,6 +107,24 @@ impl Targets {
         self.spheres.iter().map(of).sum::<f64>().min(4.0 * PI)
     }
 
+    /// How much of all directions a light takes up, seen from the nearest of them, roughly.
+    fn share_of_directions(&self, scene: &CompiledScene, lights: &Lights, index: LightIndex) -> f64 {
+        match index {
+            LightIndex::Point(number) => match scene.lights[lights.points[number].0 as usize].origin() {
+                LightOrigin::Point(_) => 0.0,
+                LightOrigin::Direction(_, angle) => angle * angle / 64.0,
+            },
+            LightIndex::Surface(number) => {
+                let surface = &lights.surfaces[number].place.surface;
+                let (place, _) = surface.bounding_sphere();
+                let distances = self.spheres.iter().map(|(center, _)| center.distance(place));
+                let nearest = distances.fold(f64::INFINITY, f64::min);
+                surface.area() / (4.0 * PI * nearest * nearest)
+            }
+            LightIndex::Environment => 1.0,
+        }
+    }
+
     /// The area of their disks.
     fn area(&self) -> f64 {
         self.spheres.iter().map(|(_, radius)| PI * radius * radius).sum()
@@ -130,7 +148,12 @@ pub struct Emission {
     targets: Targets,
     /// The probability of each light, in the order of [`Lights::all`].
     probabilities: Vec<f64>,
+    /// Which of them are so small that no path finds them by chance.
+    is_small: Vec<bool>,
 }
+
+/// A light is small where it takes up less than this share of all directions.
+const SMALL: f64 = 1e-3;
 
 impl Emission {
     /// From the lights of a scene towards targets; `None` where no light reaches them.
@@ -166,7 +189,20 @@ impl Emission {
         if !(sum > 0.0 && sum.is_finite()) {
             return None;
         }
-        Some(Self { targets, probabilities: powers.into_iter().map(|power| power / sum).collect() })
+        let is_small = lights.all().map(|index| targets.share_of_directions(scene, lights, index) < SMALL).collect();
+        let probabilities = powers.into_iter().map(|power| power / sum).collect();
+        Some(Self { targets, probabilities, is_small })
+    }
+
+    /// True of a light whose photons are kept in media: a small one. They are gathered there from balls, which blur more than disks, and
+    /// reach beyond the bounds of a body, while paths find a large light behind any boundary.
+    pub fn serves_media(&self, lights: &Lights, light: LightIndex) -> bool {
+        self.is_small.get(lights.number(light)).is_some_and(|is_small| *is_small)
+    }
+
+    /// True where there is such a light.
+    pub fn has_small_light(&self) -> bool {
+        self.is_small.contains(&true)
     }
 
     /// Light that sets out, by a number in [0, 1) for the light, one for the target, two for the direction or the way, two for the

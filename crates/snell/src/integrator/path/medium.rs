@@ -9,7 +9,7 @@ use snell_math::{Ray, Rgb};
 use super::lights::Arriving;
 use super::lobes::about;
 use super::materials::Boundary;
-use super::sample::{Purpose, Vertex};
+use super::sample::{Gathers, Purpose, Vertex};
 use super::spectra::{BLACK, Spectral, WHITE, attenuated, is_black, mean, plus, scaled, times};
 use super::{Path, Step};
 use crate::geometry::QueryScratch;
@@ -59,12 +59,19 @@ impl Path {
         let density = over_choices(times(extinction, left));
         step.path.throughput = scaled(times(step.path.throughput, times(scattering, left)), 1.0 / density);
         step.tell_scattered(reached);
-        self.scatter(step, reached, body.anisotropy, [first, second]);
+        self.scatter(step, reached, body.anisotropy, over_choices(extinction), [first, second]);
         true
     }
 
     /// Scatters a path inside a body.
-    fn scatter<O: Observer>(&self, step: &mut Step<'_, '_, '_, O>, reached: f64, anisotropy: f64, u: [f64; 2]) {
+    fn scatter<O: Observer>(
+        &self,
+        step: &mut Step<'_, '_, '_, O>,
+        reached: f64,
+        anisotropy: f64,
+        extinction: f64,
+        u: [f64; 2],
+    ) {
         let point = step.task.ray.at(reached);
         let forward = step.task.ray.direction;
         let [choice, first, second, _] = step.path.draw(Purpose::Light);
@@ -79,9 +86,14 @@ impl Path {
             let way = WayToLight { ray, distance: arriving.distance, media: step.task.media };
             self.ask(step, &arriving, way, value, term);
         }
+        if let Some(photons) = &self.photons {
+            let alone = step.path.wavelengths.is_hero_alone();
+            let found = photons.gather_in_medium(point, forward, anisotropy, extinction, alone);
+            step.add(Term::Photons, found);
+        }
         let wi = about(forward, henyey_greenstein(u, anisotropy)).normalize();
         let density = henyey_greenstein_density(forward.dot(wi), anisotropy);
-        step.path.scattered = Some(Vertex { point, density, cosine: 1.0, gathers: false });
+        step.path.scattered = Some(Vertex { point, density, gathers: Gathers::Ball { extinction } });
         step.path.specular = 0;
         let [.., roulette] = step.path.draw(Purpose::Direction);
         let media = step.task.media;

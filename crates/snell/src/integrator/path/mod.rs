@@ -15,6 +15,7 @@ mod lights;
 mod lobes;
 mod materials;
 mod medium;
+mod photon_map;
 mod photons;
 mod reflector;
 mod rough;
@@ -35,12 +36,13 @@ use crate::material::Material;
 use crate::observe::Observer;
 use crate::task::{Crossing, Cut, MediumStack, RayKind, RayRows, RayTask, ShadowQuestion, Term};
 use emission::{Emission, Targets};
-use lights::Lights;
+use lights::{LightIndex, Lights};
 use lobes::{Lobes, Scattered, Transport};
 use materials::{Boundary, Meeting, PathMaterials};
 use medium::WayToLight;
-pub use photons::{PhotonMap, PhotonPasses};
-use sample::Vertex;
+pub use photon_map::PhotonMap;
+pub use photons::PhotonPasses;
+use sample::{Gathers, Vertex};
 pub use sample::{PathSample, Purpose};
 pub use spectra::Wavelengths;
 use spectra::{Colors, Spectral, largest, scaled, times};
@@ -71,7 +73,11 @@ impl Path {
     pub fn new(scene: &CompiledScene, camera: &Camera) -> Self {
         let view = view_of(camera);
         let lights = Lights::new(scene, &view);
-        let emission = targets(scene).and_then(|targets| Emission::new(scene, &lights, targets));
+        let emission = targets(scene).and_then(|(targets, is_lit)| {
+            let emission = Emission::new(scene, &lights, targets)?;
+            // Photons of large lights are kept on surfaces alone.
+            (is_lit || emission.has_small_light()).then_some(emission)
+        });
         let materials = PathMaterials::new(scene);
         let (camera, colors) = (camera.clone(), Colors::new());
         Self { camera, colors, materials, lights, emission, photons: None }
@@ -112,13 +118,19 @@ impl Path {
     }
 }
 
-/// What is specular in a scene where light that it sends on may fall on something; else `None`.
-fn targets(scene: &CompiledScene) -> Option<Targets> {
+/// What is specular in a scene where light that it sends on may fall on something, a surface or a medium that scatters, with whether there are
+/// such surfaces; else `None`.
+fn targets(scene: &CompiledScene) -> Option<(Targets, bool)> {
     let surfaces = scene.geometry.world_surfaces();
     // Parts of solids and meshes may have materials of their own. The last material is that of objects without one.
     let given = scene.materials.split_last().map_or(&[][..], |(_, given)| given);
-    let is_lit = |surface: &WorldSurface<'_>| scene.materials[surface.material as usize].is_lit();
-    if !(given.iter().any(Material::is_lit) || surfaces.iter().any(is_lit)) {
+    let some = |keeps: &dyn Fn(&Material) -> bool| {
+        let of_surface = |surface: &WorldSurface<'_>| keeps(&scene.materials[surface.material as usize]);
+        given.iter().any(keeps) || surfaces.iter().any(of_surface)
+    };
+    let is_lit = some(&|material| material.is_lit());
+    let scatters = |material: &Material| material.body.as_ref().is_some_and(|body| !body.medium.scattering.is_black());
+    if !(is_lit || some(&scatters)) {
         return None;
     }
     let boxes: Vec<Bounds3> = surfaces
@@ -130,7 +142,7 @@ fn targets(scene: &CompiledScene) -> Option<Targets> {
     let everything = bounded.fold(Bounds3::EMPTY, |all, surface| all.union(&surface.bounds));
     let is_hidden = boxes.is_empty() && scene.materials.iter().any(Material::is_specular);
     let boxes = if is_hidden { vec![everything] } else { boxes };
-    Targets::new(&boxes, &everything)
+    Some((Targets::new(&boxes, &everything)?, is_lit))
 }
 
 /// A ray of a path being shaded.
@@ -208,7 +220,7 @@ impl Path {
                 let asked = self.lights.density_of_environment(step.scene, vertex.point, direction);
                 vertex.density / (vertex.density + asked)
             }
-            Some(vertex) => self.weight_beside_photons(&vertex, |emission| {
+            Some(vertex) => self.weight_beside_photons(&vertex, LightIndex::Environment, |emission| {
                 emission.density_of_environment(&self.lights, step.task.ray.origin, -direction)
             }),
             None => 1.0,
@@ -285,7 +297,7 @@ impl Path {
                 let asked = self.lights.density_of_surface(step.scene, index, vertex.point, interaction);
                 vertex.density / (vertex.density + asked)
             }
-            (Some(vertex), Some(index)) => self.weight_beside_photons(&vertex, |emission| {
+            (Some(vertex), Some(index)) => self.weight_beside_photons(&vertex, index, |emission| {
                 let (place, normal) = (interaction.point, interaction.geometric_normal.as_vector());
                 emission.density_of_surface(&self.lights, index, place, normal, -step.task.ray.direction)
             }),
@@ -295,10 +307,15 @@ impl Path {
     }
 
     /// The weight of light that a path found by specular surfaces after it was scattered, where photons may have found it too.
-    fn weight_beside_photons(&self, vertex: &Vertex, density: impl FnOnce(&Emission) -> f64) -> f64 {
+    fn weight_beside_photons(&self, vertex: &Vertex, light: LightIndex, density: impl FnOnce(&Emission) -> f64) -> f64 {
         match (&self.photons, &self.emission) {
-            (Some(photons), Some(emission)) if vertex.gathers => {
-                photons.weight_of_path(density(emission), vertex.cosine, vertex.density)
+            (Some(_), Some(emission))
+                if matches!(vertex.gathers, Gathers::Ball { .. }) && !emission.serves_media(&self.lights, light) =>
+            {
+                1.0
+            }
+            (Some(photons), Some(emission)) => {
+                photons.weight_of_path(density(emission), vertex.gathers, vertex.density)
             }
             _ => 1.0,
         }
@@ -379,7 +396,7 @@ impl Path {
         match scattered.density {
             Some(density) => {
                 let (point, cosine) = (interaction.point, lobes.flat_cosine(scattered.wi).abs());
-                path.scattered = Some(Vertex { point, density, cosine, gathers: true });
+                path.scattered = Some(Vertex { point, density, gathers: Gathers::Disk { cosine } });
                 path.specular = 0;
             }
             None => path.specular += 1,

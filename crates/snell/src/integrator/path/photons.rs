@@ -10,15 +10,20 @@
 //! Each pass has photons of its own, gathered from a smaller disk each time, as Hachisuka and Jensen, "Stochastic Progressive Photon Mapping",
 //! SIGGRAPH Asia 2009, shrink it: what is blurred is so less and less, while noise averages out. Photons have the wavelengths of all paths
 //! of their pass, so that colours come apart in glass as they should.
+//!
+//! Media that scatter keep photons as surfaces do, where they are scattered, gathered from balls instead of disks: N 4/3 π r³ times what the
+//! medium takes away per length stands in the place of N π r² times the cosine.
 
 use rayon::prelude::*;
 use snell_math::sampler::Sampler;
-use snell_math::{Point3, Ray, Vector3};
+use snell_math::warp::exponential;
+use snell_math::{Point3, Ray, Vector3, portable};
 
 use super::emission::{Emission, Emitted};
 use super::lights::LightIndex;
 use super::lobes::{Lobes, Transport};
 use super::materials::{Boundary, Meeting};
+use super::photon_map::{Photon, PhotonMap, place};
 use super::spectra::{BLACK, Spectral, Wavelengths, attenuated, is_black, largest, mean, plus, scaled, times};
 use super::{Path, ROULETTE_DEPTH};
 use crate::compile::CompiledScene;
@@ -31,39 +36,12 @@ use crate::task::{MediumStack, MediumStacks};
 const ALPHA: f64 = 2.0 / 3.0;
 /// The first radius, in pixels as they are seen where photons fall.
 const FIRST_RADIUS: f64 = 2.5;
+/// The same in media, where photons are fewer in a pixel's size.
+const FIRST_RADIUS_IN_MEDIA: f64 = 8.0;
 /// Photons that one thread follows at a time.
 const PORTION: u32 = 4096;
 /// How many specular surfaces a photon meets at most: as many as a path of the default depth.
 const PHOTON_DEPTH: u32 = 63;
-
-/// A photon where it fell.
-#[derive(Clone, Copy, Debug)]
-struct Photon {
-    point: [f32; 3],
-    /// Where it was going.
-    direction: [f32; 3],
-    /// The outward normal of the surface.
-    normal: [f32; 3],
-    power: [f32; 4],
-    /// See [`Emitted::density`].
-    density: f32,
-    /// It carries its hero alone, four times.
-    hero_alone: bool,
-}
-
-/// The photons of one pass.
-#[derive(Debug)]
-pub struct PhotonMap {
-    /// In the order of their cells.
-    photons: Vec<Photon>,
-    /// Where each cell's begin; one more for the end.
-    starts: Vec<u32>,
-    radius: f64,
-    /// N π r², of those that set out.
-    disks: f64,
-    /// Theirs, and those of all paths of the pass.
-    wavelengths: Wavelengths,
-}
 
 /// How the photons of the passes of a picture are made, one pass after the other.
 #[derive(Debug)]
@@ -71,8 +49,8 @@ pub struct PhotonPasses {
     count: u32,
     seed: u32,
     next: u32,
-    /// Of the first pass; unknown before a pass was made.
-    first_radius: Option<f64>,
+    /// Of the first pass, on surfaces and in media; unknown before a pass was made.
+    first_radii: Option<[f64; 2]>,
 }
 
 impl PhotonPasses {
@@ -80,7 +58,7 @@ impl PhotonPasses {
     pub fn new(path: &Path, seed: u32, pixels: u64) -> Option<Self> {
         path.emission.as_ref()?;
         let count = (pixels / 4).clamp(u64::from(PORTION), 1 << 20) as u32;
-        Some(Self { count, seed, next: 0, first_radius: None })
+        Some(Self { count, seed, next: 0, first_radii: None })
     }
 
     /// The photons of the next pass.
@@ -97,29 +75,35 @@ impl PhotonPasses {
             Pass { path, scene, emission, wavelengths: Wavelengths::sample(u), seed: self.seed, number }
         };
         let photons = pass(number).trace(self.count);
-        let first = match (self.first_radius, number) {
+        let first = match (self.first_radii, number) {
             (Some(first), _) => first,
-            (None, 0) => first_radius(path, &photons),
-            (None, _) => first_radius(path, &pass(0).trace(self.count)),
+            (None, 0) => first_radii(path, &photons),
+            (None, _) => first_radii(path, &pass(0).trace(self.count)),
         };
         let wavelengths = pass(number).wavelengths;
-        self.first_radius = Some(first);
-        let radius = (1..=number)
-            .map(f64::from)
-            .fold(first, |radius, step| radius * ((step + ALPHA - 1.0).max(ALPHA) / step).sqrt());
-        Some(PhotonMap::new(photons, radius, self.count, wavelengths))
+        self.first_radii = Some(first);
+        let shrunk = |step: f64| (step + ALPHA - 1.0).max(ALPHA) / step;
+        let [disk, ball] = first;
+        let steps = || (1..=number).map(f64::from);
+        let disk = steps().fold(disk, |radius, step| radius * shrunk(step).sqrt());
+        // As their volumes shrink, not their areas. (Knaus and Zwicker, "Progressive Photon Mapping: A Probabilistic Approach", 2011, section 4.2.)
+        let ball = steps().fold(ball, |radius, step| radius * portable::cbrt(shrunk(step)));
+        Some(PhotonMap::new(photons, [disk, ball], self.count, wavelengths))
     }
 }
 
-/// The first radius: so many pixels, where most photons fell.
-fn first_radius(path: &Path, photons: &[Photon]) -> f64 {
-    let mut sizes: Vec<f64> = photons.iter().map(|photon| path.pixel_size(place(photon.point))).collect();
-    let middle = sizes.len() / 2;
-    if sizes.is_empty() {
-        return 1.0;
-    }
-    let (_, median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
-    FIRST_RADIUS * *median
+/// The first radii: so many pixels, where most photons fell.
+fn first_radii(path: &Path, photons: &[Vec<Photon>; 2]) -> [f64; 2] {
+    let median = |photons: &[Photon]| {
+        let mut sizes: Vec<f64> = photons.iter().map(|photon| path.pixel_size(place(photon.point))).collect();
+        let middle = sizes.len() / 2;
+        if sizes.is_empty() {
+            return 1.0;
+        }
+        *sizes.select_nth_unstable_by(middle, f64::total_cmp).1
+    };
+    let [on_surfaces, in_media] = photons;
+    [FIRST_RADIUS * median(on_surfaces), FIRST_RADIUS_IN_MEDIA * median(in_media)]
 }
 
 /// One pass: what its photons are made from.
@@ -141,24 +125,30 @@ struct Buffers {
 }
 
 impl Pass<'_> {
-    /// Follows so many, and keeps them where they fall, in the order in which they set out.
-    fn trace(&self, count: u32) -> Vec<Photon> {
-        let portions: Vec<Vec<Photon>> = (0..count.div_ceil(PORTION))
+    /// Follows so many, and keeps them where they fall on surfaces and in media, in the order in which they set out.
+    fn trace(&self, count: u32) -> [Vec<Photon>; 2] {
+        let portions: Vec<[Vec<Photon>; 2]> = (0..count.div_ceil(PORTION))
             .into_par_iter()
             .map_init(Buffers::default, |buffers, portion| {
                 let first = portion * PORTION;
-                let mut kept = Vec::new();
+                let mut kept = [Vec::new(), Vec::new()];
                 for index in first..(first + PORTION).min(count) {
                     self.follow(index, buffers, &mut kept);
                 }
                 kept
             })
             .collect();
-        portions.concat()
+        let mut all = [Vec::new(), Vec::new()];
+        for portion in portions {
+            for (all, mut part) in all.iter_mut().zip(portion) {
+                all.append(&mut part);
+            }
+        }
+        all
     }
 
     /// Follows one photon.
-    fn follow(&self, index: u32, buffers: &mut Buffers, kept: &mut Vec<Photon>) {
+    fn follow(&self, index: u32, buffers: &mut Buffers, [on_surfaces, in_media]: &mut [Vec<Photon>; 2]) {
         // Other numbers than those of any pixel.
         let sampler = Sampler::new(self.seed, [u32::MAX, 1 + self.number], index);
         let ([choice, target, u, v], [x, y, ..]) = (sampler.set(0), sampler.set(1));
@@ -184,7 +174,11 @@ impl Pass<'_> {
             };
             let interaction = self.scene.geometry.interaction(&photon.ray, &hit);
             let draw = sampler.set(2 + events);
-            if !photon.travel(self.path, hit.t, draw[3], &buffers.media) {
+            if let Some(point) = photon.travel(self.path, hit.t, draw[3], &buffers.media) {
+                if events > 0 && self.emission.serves_media(lights, light) {
+                    let power = scaled(photon.power, self.fall_off(light, photon.travelled));
+                    in_media.extend(photon.kept(point, Vector3::default(), power, density));
+                }
                 return;
             }
             let materials = &self.path.materials;
@@ -215,7 +209,8 @@ impl Pass<'_> {
             let lobes = Lobes::new(&surface, &interaction, wo);
             if events > 0 && lobes.is_lit() {
                 let power = scaled(photon.power, self.fall_off(light, photon.travelled));
-                kept.extend(photon.fallen(&interaction, power, density));
+                let normal = interaction.geometric_normal.as_vector();
+                on_surfaces.extend(photon.kept(interaction.point, normal, power, density));
             }
             let Some(scattered) = lobes.sample(draw[0], [draw[1], draw[2]], Transport::Power) else { return };
             if scattered.density.is_some() {
@@ -264,20 +259,39 @@ struct Flight {
 }
 
 impl Flight {
-    /// Goes through the body that is there to a distance; false where it is scattered before.
-    fn travel(&mut self, path: &Path, distance: f64, u: f64, media: &MediumStacks) -> bool {
-        self.travelled += distance;
-        let Some(inside) = media.current(self.media) else { return true };
-        let Some(body) = path.materials.body(inside.material) else { return true };
+    /// Goes through the body that is there to a distance; gives the place where it is scattered before. See
+    /// [`Path::travel`](super::Path) for how that is chosen.
+    fn travel(&mut self, path: &Path, distance: f64, u: f64, media: &MediumStacks) -> Option<Point3> {
+        let body = media.current(self.media).and_then(|inside| path.materials.body(inside.material));
+        let Some(body) = body else {
+            self.travelled += distance;
+            return None;
+        };
         let [absorption, scattering] = body.at(self.wavelengths.nm());
-        let left = plus(absorption, scattering).map(|extinction| attenuated(extinction, distance));
-        self.power = times(self.power, left);
+        let extinction = plus(absorption, scattering);
+        let left = |distance: f64| extinction.map(|extinction| attenuated(extinction, distance));
         if is_black(scattering) {
-            return true;
+            self.power = times(self.power, left(distance));
+            self.travelled += distance;
+            return None;
         }
-        let through = if self.wavelengths.is_hero_alone() { left[0] } else { mean(left) };
-        self.power = scaled(self.power, 1.0 / through);
-        u < through
+        let alone = self.wavelengths.is_hero_alone();
+        let over_choices = |values: Spectral| if alone { values[0] } else { mean(values) };
+        // One number chooses a wavelength, and what is left of it the distance.
+        let choices = if alone { 1.0 } else { extinction.len() as f64 };
+        let chosen = ((u * choices) as usize).min(extinction.len() - 1);
+        let u = (u * choices).fract();
+        let reached = if extinction[chosen] > 0.0 { exponential(u, extinction[chosen]) } else { f64::INFINITY };
+        if reached >= distance {
+            self.power = scaled(times(self.power, left(distance)), 1.0 / over_choices(left(distance)));
+            self.travelled += distance;
+            return None;
+        }
+        // What the medium scatters of it is in what paths carry that come here.
+        let density = over_choices(times(extinction, left(reached)));
+        self.power = scaled(times(self.power, left(reached)), 1.0 / density);
+        self.travelled += reached;
+        Some(self.ray.at(reached))
     }
 
     fn give_up_others(&mut self) {
@@ -295,12 +309,12 @@ impl Flight {
         self.media = media;
     }
 
-    /// As it is kept; `None` where something is not finite.
-    fn fallen(&self, interaction: &SurfaceInteraction, power: Spectral, density: f64) -> Option<Photon> {
+    /// As it is kept at a place; `None` where something is not finite.
+    fn kept(&self, point: Point3, normal: Vector3, power: Spectral, density: f64) -> Option<Photon> {
         let photon = Photon {
-            point: interaction.point.to_array().map(|x| x as f32),
+            point: point.to_array().map(|x| x as f32),
             direction: self.ray.direction.to_array().map(|x| x as f32),
-            normal: interaction.geometric_normal.as_vector().to_array().map(|x| x as f32),
+            normal: normal.to_array().map(|x| x as f32),
             power: power.map(|x| x as f32),
             density: density as f32,
             hero_alone: self.wavelengths.is_hero_alone(),
@@ -308,106 +322,4 @@ impl Flight {
         let finite = photon.point.iter().chain(&photon.power).all(|x| x.is_finite());
         (finite && !is_black(power)).then_some(photon)
     }
-}
-
-impl PhotonMap {
-    fn new(photons: Vec<Photon>, radius: f64, count: u32, wavelengths: Wavelengths) -> Self {
-        let cells = photons.len().next_power_of_two().max(2);
-        let size = 2.0 * radius;
-        let mut keyed: Vec<(u32, Photon)> =
-            photons.par_iter().map(|photon| (cell(coordinates(place(photon.point), size), cells), *photon)).collect();
-        // Photons of one cell stay in the order in which they set out.
-        keyed.par_sort_by_key(|(cell, _)| *cell);
-        let mut starts = vec![0; cells + 1];
-        for (cell, _) in &keyed {
-            starts[*cell as usize + 1] += 1;
-        }
-        for cell in 0..cells {
-            starts[cell + 1] += starts[cell];
-        }
-        let photons = keyed.into_iter().map(|(_, photon)| photon).collect();
-        let disks = f64::from(count) * std::f64::consts::PI * radius * radius;
-        Self { photons, starts, radius, disks, wavelengths }
-    }
-
-    /// The wavelengths of the pass.
-    pub fn wavelengths(&self) -> &Wavelengths {
-        &self.wavelengths
-    }
-
-    /// The weight of light that a path found by itself, which photons may have found too: `density` is that with which light sets out
-    /// (as it is kept with photons), `cosine` and `sent` are those of the path where it was sent on.
-    pub fn weight_of_path(&self, density: f64, cosine: f64, sent: f64) -> f64 {
-        1.0 / (1.0 + self.disks * density * cosine / sent)
-    }
-
-    /// What the photons around a place make of the surface there, seen along a path.
-    pub fn gather(&self, interaction: &SurfaceInteraction, lobes: &Lobes<'_>, hero_alone: bool) -> Spectral {
-        let mut sum = BLACK;
-        if self.photons.is_empty() {
-            return sum;
-        }
-        let (point, normal) = (interaction.point, interaction.geometric_normal);
-        let size = 2.0 * self.radius;
-        let cells = self.starts.len() - 1;
-        // The disk touches the cells around its corner: two in each direction.
-        let low = coordinates(point - Vector3::new(self.radius, self.radius, self.radius), size);
-        let mut seen = [u32::MAX; 8];
-        for corner in 0..8 {
-            let at = std::array::from_fn(|axis| low[axis].wrapping_add((corner >> axis) & 1));
-            let cell = cell(at, cells);
-            if seen[..corner as usize].contains(&cell) {
-                continue;
-            }
-            seen[corner as usize] = cell;
-            let range = self.starts[cell as usize] as usize..self.starts[cell as usize + 1] as usize;
-            for photon in &self.photons[range] {
-                let offset = place(photon.point) - point;
-                if offset.length_squared() > self.radius * self.radius {
-                    continue;
-                }
-                // Not around corners.
-                if vector(photon.normal).dot(normal.as_vector()) < 0.5 {
-                    continue;
-                }
-                let wi = -vector(photon.direction);
-                let (value, sent) = lobes.evaluate(wi, Transport::Radiance);
-                if sent <= 0.0 {
-                    continue;
-                }
-                let cosine = lobes.flat_cosine(wi).abs();
-                let ratio = self.disks * f64::from(photon.density) * cosine / sent;
-                let weight = if ratio.is_finite() { ratio / (1.0 + ratio) } else { 1.0 };
-                let power = photon.power.map(f64::from);
-                // Where both have given up the others, the hero counts four times, not sixteen.
-                let power = if hero_alone && photon.hero_alone { scaled(power, 0.25) } else { power };
-                sum = plus(sum, scaled(times(value, power), weight / (cosine * self.disks)));
-            }
-        }
-        sum
-    }
-}
-
-/// The cell of a place.
-fn coordinates(point: Point3, size: f64) -> [i64; 3] {
-    point.to_array().map(|x| {
-        let cell = (x / size).floor();
-        // Saturates, which puts what is very far away into few cells.
-        cell as i64
-    })
-}
-
-/// The place of a cell in a table whose size is a power of two. (Teschner et al., "Optimized Spatial Hashing", VMV 2003.)
-fn cell([x, y, z]: [i64; 3], cells: usize) -> u32 {
-    let mixed = (x.wrapping_mul(73_856_093)) ^ (y.wrapping_mul(19_349_663)) ^ (z.wrapping_mul(83_492_791));
-    let mixed = mixed as u64 ^ (mixed as u64 >> 17);
-    (mixed & (cells as u64 - 1)) as u32
-}
-
-fn place(point: [f32; 3]) -> Point3 {
-    Point3::from(point.map(f64::from))
-}
-
-fn vector(v: [f32; 3]) -> Vector3 {
-    Vector3::from(v.map(f64::from))
 }

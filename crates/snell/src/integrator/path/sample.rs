@@ -33,10 +33,23 @@ pub struct Vertex {
     pub point: Point3,
     /// The density per steradian of the direction in which it was sent.
     pub density: f64,
-    /// The cosine of that direction with the surface.
-    pub cosine: f64,
-    /// Photons are gathered there.
-    pub gathers: bool,
+    /// What photons are gathered from there.
+    pub gathers: Gathers,
+}
+
+/// What photons around a place are gathered from.
+#[derive(Clone, Copy, Debug)]
+pub enum Gathers {
+    /// A disk on a surface, with which the direction that a path was sent on in has a cosine.
+    Disk {
+        /// The cosine.
+        cosine: f64,
+    },
+    /// A ball in a medium.
+    Ball {
+        /// What the medium takes away per world unit, the mean of the wavelengths.
+        extinction: f64,
+    },
 }
 
 /// So often a path divides: into the reflection of a ball, and what is seen through it, and what is reflected inside.
