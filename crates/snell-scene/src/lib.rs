@@ -7,6 +7,7 @@ pub mod assets;
 pub mod catalogue;
 pub mod diagnostic;
 pub mod document;
+pub mod lenses;
 pub mod reader;
 pub mod scene;
 pub mod table;

@@ -41,7 +41,11 @@ fn cases() -> Vec<Case> {
 }
 
 fn assets() -> MemoryAssets {
-    MemoryAssets::default().with("textures/wood.png", b"png").with("valley.hdr", b"hdr")
+    MemoryAssets::default()
+        .with("textures/wood.png", b"png")
+        .with("valley.hdr", b"hdr")
+        .with("lenses/wrong.toml", b"surfaces = [{ radus = 3, diameter = -1 }]\nnam = 'x'\n")
+        .with("lenses/two-stops.toml", b"surfaces = [{ diameter = 1, stop = true }, { diameter = 1, stop = true }]\n")
 }
 
 /// Diagnostics as plain text, as a compiler shows them.

@@ -4,11 +4,15 @@
 //! covers [i, i + 1) × [j, j + 1). Eye space is right-handed: x right (u), y up (v), looking along −z (w = −gaze), as in
 //! Shirley et al., *Fundamentals of Computer Graphics*, chapter 7.
 
+mod lens;
+
 use snell_math::lanes::{LaneVector, Lanes};
 use snell_math::warp::Aperture;
 use snell_math::{Point3, Ray, Vector3, portable};
 use snell_scene::scene;
 
+use self::lens::LensFrame;
+pub use self::lens::RealLens;
 use crate::viewing::{Pipeline, Rectangle, RectangleMap, ViewVolume, ViewingError, view_axes};
 pub use crate::viewing::{Projection, Rectangle as Window};
 
@@ -29,7 +33,7 @@ pub struct Camera {
     shift: f64,
     window_from_raster: RectangleMap,
     raster_from_window: RectangleMap,
-    lens: Option<scene::ThinLens>,
+    lens: Option<scene::CameraLens>,
 }
 
 /// Where a world point appears.
@@ -117,7 +121,7 @@ impl Camera {
             shift,
             window_from_raster,
             raster_from_window,
-            lens: description.lens,
+            lens: description.lens.clone(),
         })
     }
 
@@ -145,13 +149,13 @@ impl Camera {
         }
     }
 
-    /// A ray through a raster position and a place on the lens, by two numbers in [0, 1): all of one position meet where the lens
+    /// A ray through a raster position and a place on a thin lens, by two numbers in [0, 1): all of one position meet where the lens
     /// is sharp. (Cook, Porter and Carpenter, "Distributed Ray Tracing", SIGGRAPH 1984.) The ray of [`Camera::generate_ray`]
-    /// without a lens.
+    /// without a thin lens; for the rays of a real one see [`Camera::real_lens`].
     #[inline]
     pub fn generate_lens_ray(&self, x: f64, y: f64, u: [f64; 2]) -> Ray {
         let ray = self.generate_ray(x, y);
-        let Some(scene::ThinLens { radius, focus, blades }) = self.lens else { return ray };
+        let Some(scene::CameraLens::Thin(scene::ThinLens { radius, focus, blades })) = self.lens else { return ray };
         let [a, b] = Aperture::new(blades, 0.0).sample(u);
         let across = self.right * (a * radius) + self.up * (b * radius);
         let sharp = self.eye + ray.direction * (focus / -ray.direction.dot(self.back));
@@ -159,10 +163,35 @@ impl Camera {
         Ray::new(origin, (sharp - origin).normalize())
     }
 
-    /// True where it has a lens.
+    /// True where it has a thin lens.
     #[inline]
-    pub fn has_lens(&self) -> bool {
-        self.lens.is_some()
+    pub fn has_thin_lens(&self) -> bool {
+        matches!(self.lens, Some(scene::CameraLens::Thin(_)))
+    }
+
+    /// Its real lens, ready to be traced, which takes a tenth of a second; `None` where it has none.
+    pub fn real_lens(&self) -> Option<RealLens> {
+        let Some(scene::CameraLens::System(lens)) = &self.lens else { return None };
+        let prescription = &lens.prescription;
+        let surfaces = &prescription.surfaces;
+        let length: f64 = surfaces[..surfaces.len() - 1].iter().map(|surface| surface.thickness).sum();
+        let pupil_from_last = length - prescription.paraxial_d().entrance_pupil();
+        let millimetre = 1.0 / lens.unit_mm;
+        // The image on the film is turned over, and stands as large there as the window's width says.
+        let scale = -lens.film_width / (self.window.right - self.window.left);
+        let at = |x: f64, y: f64| self.window_from_raster.point([x, y]).map(|x| scale * x);
+        let ([x0, y0], [x1, y1]) = (at(0.0, 0.0), at(1.0, 1.0));
+        let frame = LensFrame {
+            origin: self.eye + self.back * (pupil_from_last * millimetre),
+            axes: self.axes(),
+            millimetre,
+            film_from_raster: [[x1 - x0, x0], [y1 - y0, y0]],
+        };
+        let film = [
+            lens.film_width,
+            lens.film_width * (self.window.top - self.window.bottom) / (self.window.right - self.window.left),
+        ];
+        Some(RealLens::new(lens, frame, film))
     }
 
     /// How far along a ray of [`Camera::generate_ray`] the far plane is; infinite where there is none.

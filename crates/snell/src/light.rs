@@ -168,7 +168,7 @@ mod tests {
     use super::*;
 
     fn light(kind: scene::LightKind, falloff: scene::Falloff) -> Light {
-        Light::new(&scene::Light { name: None, kind, intensity: Rgb::gray(8.0), falloff })
+        Light::new(&scene::Light { name: None, kind, intensity: Rgb::gray(8.0), spectrum: None, falloff })
     }
 
     #[test]

@@ -59,6 +59,33 @@ pub fn read_scene(name: &str, bytes: &[u8], assets: &dyn Assets, overrides: &[St
     (scene, diagnostics)
 }
 
+/// Reads a TOML file that a scene names and that holds one table of the schema, such as a lens; `called` is what messages call it.
+/// `None` where it has mistakes, which are told.
+fn read_table<T: for<'de> Deserialize<'de>>(
+    name: &str,
+    bytes: &[u8],
+    [definition, called]: [&'static str; 2],
+    diagnostics: &mut Diagnostics,
+) -> Option<T> {
+    let text = String::from_utf8_lossy(bytes);
+    let source = diagnostics.sources.add(name, &*text);
+    if text.len() > tree::Place::LONGEST {
+        diagnostics.push(Diagnostic::error(format!("the file {name:?} is too long for {called}")));
+        return None;
+    }
+    let root = parse::document(&text, source, diagnostics)?;
+    if !check::check_table(&root, &schema::RuleBook::new(), definition, called, diagnostics) {
+        return None;
+    }
+    match T::deserialize(root) {
+        Ok(table) => Some(table),
+        Err(mismatch) => {
+            diagnostics.push(Diagnostic::error(format!("the file {name:?} cannot be read: {mismatch}")));
+            None
+        }
+    }
+}
+
 /// How much is told of one scene.
 const MAX_TOLD: usize = 200;
 

@@ -157,6 +157,11 @@ impl<'a> Part<'a> {
         Self::new(whole, whole.root()?)
     }
 
+    /// A definition, by the extract for the checks.
+    pub fn definition(rules: &'a RuleBook, name: &str) -> Option<Self> {
+        Self::new(Whole::Rules(rules), rules.get(name)?)
+    }
+
     fn new(whole: Whole<'a>, written: &'a Value) -> Option<Self> {
         let written = written.as_object()?;
         let body = match written.get("$ref").and_then(Value::as_str) {

@@ -2,10 +2,12 @@
 
 use snell_math::{Point3, Vector3};
 
+use super::lens::CameraLens;
+
 /// Position, orientation and frame. World space; right-handed; the picture's up is the projection of `up`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
-    /// The centre of projection; for an orthographic camera the point in the middle of the picture.
+    /// The centre of projection, which for a real lens is the middle of its entrance pupil; for an orthographic camera the point in the middle of the picture.
     pub eye: Point3,
     /// Where it looks, any positive length.
     pub gaze: Vector3,
@@ -13,19 +15,9 @@ pub struct Camera {
     pub up: Vector3,
     /// The projection and what of the world is in the picture.
     pub frame: Frame,
-    /// A lens, which is sharp at one distance alone, where paths are traced; `None` for a pinhole.
-    pub lens: Option<ThinLens>,
-}
-
-/// A thin lens in front of a perspective camera.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ThinLens {
-    /// The radius of its aperture, world units, positive.
-    pub radius: f64,
-    /// How far in front of the eye, along the gaze, is what is sharp; positive.
-    pub focus: f64,
-    /// How many blades its aperture has; 0 for a round one.
-    pub blades: u32,
+    /// A lens, which is sharp at one distance alone, where paths are traced; `None` for a pinhole. `frame` is what it shows of the
+    /// plane on which it is focused, seen from `eye`.
+    pub lens: Option<CameraLens>,
 }
 
 /// The projection and its window.

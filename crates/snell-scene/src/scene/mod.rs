@@ -7,6 +7,7 @@ pub mod background;
 pub mod camera;
 pub mod drawing;
 pub mod expression;
+pub mod lens;
 pub mod light;
 pub mod material;
 pub mod mesh;
@@ -18,11 +19,12 @@ pub mod texture;
 use snell_math::Rgb;
 
 pub use background::{Background, ImageAsset};
-pub use camera::{Camera, Frame, ThinLens};
+pub use camera::{Camera, Frame};
 pub use drawing::{
     AxesLength, CameraMark, Drawing, Extent, GridMark, GroundGrid, HiddenLines, LineMark, PointMark, StrokeBy,
 };
 pub use expression::{Expression, ExpressionError};
+pub use lens::{CameraLens, LensPrescription, LensSurface, LensSystem, Paraxial, ParaxialImage, ThinLens};
 pub use light::{Falloff, Light, LightKind};
 pub use material::{Dielectric, Film, Material, Medium, Metal, MetalIndex};
 pub use mesh::Mesh;

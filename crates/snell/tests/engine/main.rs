@@ -9,6 +9,7 @@ mod stage;
 mod compile;
 mod determinism;
 mod explain;
+mod lens;
 mod lighting;
 mod optics;
 mod paths;

@@ -23,23 +23,28 @@ const MAX_TOLD: usize = 100;
 /// Checks a whole file and takes out of its tree what is wrong.
 pub(in crate::document) fn check(root: &mut Node<'_>, rules: &RuleBook, diagnostics: &mut Diagnostics) {
     let Some(part) = Part::rules(rules) else { return };
-    let mut checker = Checker {
-        root: part,
-        rules: Rules::default(),
-        names: Names::of(root),
-        path: Vec::new(),
-        diagnostics,
-        told: 0,
-        untold: 0,
-    };
+    let mut checker = Checker::new(part, "the scene", root, diagnostics);
     checker.duplicate_names(root);
     let keep = checker.file(root, part);
-    if checker.untold > 0 {
-        let more = checker.untold;
-        checker.diagnostics.push(Diagnostic::error(format!("and {more} more mistakes of this kind")));
-    }
+    checker.tell_untold();
     checker.names.tell_unused(checker.diagnostics);
     prune(root, keep);
+}
+
+/// Checks a file that is one table of the schema, by its definition there; true where it is right.
+pub(in crate::document) fn check_table(
+    root: &Node<'_>,
+    rules: &RuleBook,
+    definition: &str,
+    called: &'static str,
+    diagnostics: &mut Diagnostics,
+) -> bool {
+    let Some(part) = Part::definition(rules, definition) else { return false };
+    let mut checker = Checker::new(part, called, root, diagnostics);
+    let rule = checker.rules.of(part);
+    let right = checker.value(root, &rule);
+    checker.tell_untold();
+    right
 }
 
 /// What of an entry of the file is right.
@@ -77,6 +82,8 @@ enum Step<'n> {
 /// Checks the nodes of one tree (`'n`) against one schema (`'a`).
 struct Checker<'a, 'n> {
     root: Part<'a>,
+    /// What messages call the whole.
+    called: &'static str,
     rules: Rules<'a>,
     names: Names,
     path: Vec<Step<'n>>,
@@ -86,6 +93,18 @@ struct Checker<'a, 'n> {
 }
 
 impl<'a, 'n> Checker<'a, 'n> {
+    fn new(root: Part<'a>, called: &'static str, tree: &Node<'_>, diagnostics: &'a mut Diagnostics) -> Self {
+        let (rules, names) = (Rules::default(), Names::of(tree));
+        Self { root, called, rules, names, path: Vec::new(), diagnostics, told: 0, untold: 0 }
+    }
+
+    fn tell_untold(&mut self) {
+        if self.untold > 0 {
+            let more = self.untold;
+            self.diagnostics.push(Diagnostic::error(format!("and {more} more mistakes of this kind")));
+        }
+    }
+
     fn tell(&mut self, diagnostic: Diagnostic) {
         if !self.is_enough() {
             self.told += 1;
@@ -223,7 +242,7 @@ impl<'a, 'n> Checker<'a, 'n> {
     /// The value now looked at, as a message names it and as `--set` takes it.
     fn place(&self) -> String {
         if self.path.is_empty() {
-            return "the scene".to_owned();
+            return self.called.to_owned();
         }
         let steps: Vec<String> = self
             .path

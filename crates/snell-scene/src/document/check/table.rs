@@ -76,7 +76,8 @@ impl<'a, 'n> Checker<'a, 'n> {
         }
         let place = self.place();
         let message = if self.path.is_empty() {
-            format!("there is no key `{}` at the top of a scene", key.name)
+            // "The scene" is "a scene" there.
+            format!("there is no key `{}` at the top of {}", key.name, self.called.replacen("the ", "a ", 1))
         } else {
             format!("there is no key `{}` in {place}", key.name)
         };

@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::lens::LensChoice;
 use super::value::{Color, Located, Triple};
 
 /// From where the scene is seen. What of the world is in the picture is said by `fov` or `vertical_fov` (perspective), by
@@ -37,31 +38,8 @@ pub struct Camera {
     pub width: Option<Located<f64>>,
     /// The picture's window in eye space.
     pub window: Option<Located<Window>>,
-    /// A lens, which is sharp at one distance alone. `path` shows it; `whitted` has a pinhole.
-    pub lens: Option<Located<CameraLens>>,
-}
-
-/// A thin lens: where it is sharp is said by `focus` or `focus_at`.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(
-    extend("x-at-most-one" = [["focus", "focus_at"]]),
-    extend("x-example" = "[camera]\neye = [0, 2, 7]\nlens = { radius = 0.1, focus_at = [0, 1, 0] }\n"),
-)]
-pub struct CameraLens {
-    /// The radius of its aperture.
-    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "world units"))]
-    pub radius: f64,
-    /// The distance along the gaze at which it is sharp. Without it and without `focus_at`, that of `look_at`.
-    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "world units"))]
-    pub focus: Option<f64>,
-    /// A point at whose distance it is sharp.
-    #[schemars(extend("x-unit" = "world units"))]
-    pub focus_at: Option<Located<Triple>>,
-    /// How many blades the aperture has, whose edges show in what is blurred; 0 for a round one.
-    #[serde(default)]
-    #[schemars(range(min = 0, max = 32))]
-    pub blades: u32,
+    /// A lens, which is sharp at one distance alone: the name of a real lens, or a table. `path` shows it; `whitted` has a pinhole.
+    pub lens: Option<Located<LensChoice>>,
 }
 
 impl Default for Camera {

@@ -11,6 +11,7 @@
 mod camera;
 mod drawing;
 mod formula;
+mod lens;
 mod light;
 mod material;
 mod mesh;
@@ -24,15 +25,17 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use camera::{
-    Background, BackgroundGradient, BackgroundStop, Camera, CameraLens, GradientStop, Panorama, Photograph, Projection,
-    Window,
+    Background, BackgroundGradient, BackgroundStop, Camera, GradientStop, Panorama, Photograph, Projection, Window,
 };
 pub use drawing::{CameraMark, Drawing, GridMark, GroundGrid, HiddenLines, LineMark, PointMark, StrokeBy};
 pub use formula::{Formula, Quantity};
+pub use lens::{
+    CameraLens, IndexAndAbbeNumber, LensChoice, LensGlass, LensPrescription, LensSurface, PrescriptionChoice,
+};
 pub use light::{DirectionalLight, Falloff, FalloffLaw, Light, PointLight, PolynomialFalloff, SpotLight};
 pub use material::{
-    Absorption, Cauchy, ComplexIndex, Dielectric, Film, Ior, IorFormula, Material, MaterialChoice, Metal, Scattering,
-    Sellmeier,
+    Absorption, Cauchy, ComplexIndex, Dielectric, Film, Ior,
+    IorFormula, Material, MaterialChoice, Metal, Scattering, Sellmeier,
 };
 pub use mesh::Mesh;
 pub use object::{Grid, Object, Step, StepVectors};
@@ -49,7 +52,7 @@ pub use value::{
     Triple,
 };
 
-/// A whole scene file. The keys without a table of their own (`ambient`) stand at its top, before the first `[table]`.
+/// A whole scene file. The keys without a table of their own (`ambient`, `unit`) stand at its top, before the first `[table]`.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 #[schemars(
@@ -64,6 +67,9 @@ pub struct Document {
     /// Ambient light: what reaches every surface from all around. It multiplies each material's `ambient` colour.
     #[schemars(extend("default" = 0))]
     pub ambient: Color,
+    /// How long a world unit is: a word, or a number of millimetres. Only what is measured asks for it: real lenses of cameras.
+    #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "mm"))]
+    pub unit: Option<Located<Unit>>,
     /// The picture: its size, and how colours become display colours.
     pub image: Image,
     /// How the picture is computed: the limits of the recursion, antialiasing, shadows.
@@ -126,6 +132,27 @@ pub enum Tone {
     Reinhard,
     /// A filmic curve, Narkowicz's fit of ACES.
     Filmic,
+}
+
+/// How long a world unit is: a word, or millimetres.
+pub type Unit = Either<UnitName, f64>;
+
+/// A unit of length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum UnitName {
+    /// A millimetre.
+    Mm,
+    /// A centimetre.
+    Cm,
+    /// A metre.
+    M,
+    /// An inch, 25.4 mm.
+    In,
+}
+
+impl Forms for UnitName {
+    const FORMS: &'static [Form] = &[Form::Text];
 }
 
 /// Where in the window the rays of the pixels pass.

@@ -11,7 +11,7 @@ use crate::table::Id;
 impl Resolver<'_> {
     /// A file's resolved path and bytes; a missing one is told.
     pub(super) fn file(&mut self, file: &Located<String>) -> Option<(String, Arc<[u8]>)> {
-        let path = self.assets.resolve(self.base, &file.value);
+        let path = self.assets.resolve(&self.base, &file.value);
         match self.assets.read(&path) {
             Ok(bytes) => Some((path, bytes)),
             Err(reason) => {
@@ -33,7 +33,7 @@ impl Resolver<'_> {
     /// A picture file, once however often it is named. Where it is missing, an id that leads nowhere: the scene is not
     /// given out then.
     pub(super) fn image(&mut self, file: &Located<String>) -> Id<ImageAsset> {
-        let path = self.assets.resolve(self.base, &file.value);
+        let path = self.assets.resolve(&self.base, &file.value);
         if let Some(id) = self.images.get(&path) {
             return *id;
         }

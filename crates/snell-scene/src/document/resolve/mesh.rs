@@ -14,7 +14,7 @@ impl Resolver<'_> {
         let given = &located.value;
         let id = match &given.file {
             Some(file) => {
-                let path = self.assets.resolve(self.base, &file.value);
+                let path = self.assets.resolve(&self.base, &file.value);
                 let key = (path, given.smooth.map(f64::to_bits));
                 match self.meshes.get(&key) {
                     Some(id) => *id,

@@ -3,6 +3,7 @@
 //! Each part goes on after a mistake with some harmless value, so that all mistakes are found; where there was any, the
 //! scene is not given out.
 
+mod camera_lens;
 mod drawing;
 mod files;
 mod ior;
@@ -41,9 +42,10 @@ pub(in crate::document) fn resolve(
 ) -> Scene {
     let mut resolver = Resolver {
         scene: Scene::default(),
-        base,
+        base: base.to_owned(),
         assets,
         diagnostics,
+        unit_mm: document.unit.as_ref().map(|unit| millimetres(&unit.value)),
         images: BTreeMap::new(),
         textures: BTreeMap::new(),
         materials: BTreeMap::new(),
@@ -72,11 +74,24 @@ pub(in crate::document) fn resolve(
     resolver.scene
 }
 
+fn millimetres(unit: &model::Unit) -> f64 {
+    match unit {
+        Either::A(model::UnitName::Mm) => 1.0,
+        Either::A(model::UnitName::Cm) => 10.0,
+        Either::A(model::UnitName::M) => 1000.0,
+        Either::A(model::UnitName::In) => 25.4,
+        Either::B(millimetres) => *millimetres,
+    }
+}
+
 struct Resolver<'a> {
     scene: Scene,
-    base: &'a str,
+    /// The file against which names of files are resolved.
+    base: String,
     assets: &'a dyn Assets,
     diagnostics: &'a mut Diagnostics,
+    /// How many millimetres a world unit is long, where the author said so.
+    unit_mm: Option<f64>,
     /// By resolved path.
     images: BTreeMap<String, Id<ImageAsset>>,
     textures: BTreeMap<String, Id<Texture>>,

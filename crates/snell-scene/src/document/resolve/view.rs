@@ -4,7 +4,7 @@ use snell_math::{Point3, Rgb, Vector3, portable};
 
 use super::Resolver;
 use crate::document::model::{self, BackgroundGradient, Located, Projection, Triple};
-use crate::scene::{Background, Camera, Frame, ThinLens};
+use crate::scene::{Background, Camera, Frame};
 
 /// The sine of the angle between gaze and up below which they count as parallel.
 pub(super) const PARALLEL: f64 = 1e-9;
@@ -38,40 +38,11 @@ impl Resolver<'_> {
             );
         }
         let frame = self.frame(camera);
-        let lens = camera.lens.as_ref().and_then(|lens| self.thin_lens(lens, eye, gaze, &frame));
-        Camera { eye, gaze, up: camera.up.value.into(), frame, lens }
-    }
-
-    fn thin_lens(
-        &mut self,
-        lens: &Located<model::CameraLens>,
-        eye: Point3,
-        gaze: Vector3,
-        frame: &Frame,
-    ) -> Option<ThinLens> {
-        if matches!(frame, Frame::OrthographicWidth(_) | Frame::OrthographicWindow { .. }) {
-            let message = "an orthographic camera has no lens: all that it sees is sharp";
-            self.error(&lens.span, message, "leave it out, or give `fov`");
-            return None;
-        }
-        let model::CameraLens { radius, focus, focus_at, blades } = &lens.value;
-        let focus = match (focus, focus_at) {
-            (Some(focus), _) => *focus,
-            (None, Some(point)) => {
-                let along = (Point3::from(point.value) - eye).dot(gaze.normalize());
-                if along <= 0.0 {
-                    self.error(
-                        &point.span,
-                        "the lens cannot be sharp at a point behind the camera",
-                        "behind the camera",
-                    );
-                    return None;
-                }
-                along
-            }
-            (None, None) => gaze.length(),
+        let (lens, frame) = match &camera.lens {
+            Some(lens) => self.camera_lens(lens, camera, gaze, frame),
+            None => (None, frame),
         };
-        Some(ThinLens { radius: *radius, focus, blades: *blades })
+        Camera { eye, gaze, up: camera.up.value.into(), frame, lens }
     }
 
     fn frame(&mut self, camera: &model::Camera) -> Frame {

@@ -28,7 +28,7 @@ use snell_math::sampler::Sampler;
 use snell_math::{Bounds3, Point3, Ray, Rgb};
 
 use super::{Integrator, Sink, view_of};
-use crate::camera::{Camera, Projection, Window};
+use crate::camera::{Camera, Projection, RealLens, Window};
 use crate::compile::CompiledScene;
 use crate::geometry::{HitRows, WorldSurface};
 use crate::interaction::{SurfaceInteraction, SurfaceRows};
@@ -45,7 +45,7 @@ pub use photons::PhotonPasses;
 use sample::{Gathers, Vertex};
 pub use sample::{PathSample, Purpose};
 pub use spectra::Wavelengths;
-use spectra::{Colors, Spectral, largest, scaled, times};
+use spectra::{BLACK, Colors, Spectral, largest, scaled, times};
 
 /// From this depth on paths end by chance, the likelier the less they carry.
 const ROULETTE_DEPTH: u16 = 4;
@@ -59,6 +59,8 @@ const LEAST_DIVIDED: f64 = 1.0 / 256.0;
 #[derive(Debug)]
 pub struct Path {
     camera: Camera,
+    /// Its real lens, where it has one.
+    lens: Option<RealLens>,
     colors: Colors,
     materials: PathMaterials,
     lights: Lights,
@@ -79,8 +81,8 @@ impl Path {
             (is_lit || emission.has_small_light()).then_some(emission)
         });
         let materials = PathMaterials::new(scene);
-        let (camera, colors) = (camera.clone(), Colors::new());
-        Self { camera, colors, materials, lights, emission, photons: None }
+        let (camera, lens, colors) = (camera.clone(), camera.real_lens(), Colors::new());
+        Self { camera, lens, colors, materials, lights, emission, photons: None }
     }
 
     /// The passes of photons for a picture of so many pixels, under a seed; `None` where they would bring nothing.
@@ -115,6 +117,20 @@ impl Path {
             }
         };
         PathSample::new(sampler, wavelengths)
+    }
+
+    /// The ray with which a path begins inside a real lens, from a raster position, by two numbers in [0, 1) for the way through it;
+    /// `None` where the camera has no such lens. Wavelengths that go different ways through it begin with different rays, so the path
+    /// keeps the hero alone. On a way that leads against a rim it carries nothing.
+    pub fn begin_in_lens(&self, place: [f64; 2], u: [f64; 2], path: &mut PathSample) -> Option<Ray> {
+        let lens = self.lens.as_ref()?;
+        if lens.disperses() {
+            path.wavelengths.give_up_others();
+        }
+        let found = lens.ray(place, u, path.wavelengths.hero_nm());
+        path.throughput = found.map_or(BLACK, |(_, weight)| [weight; 4]);
+        let [x, y] = place;
+        Some(found.map_or_else(|| self.camera.generate_ray(x, y), |(ray, _)| ray))
     }
 }
 
