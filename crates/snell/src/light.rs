@@ -1,6 +1,7 @@
 //! Lights without extent, as the lecture has them: where they are, and how much light arrives at a point.
 
 use snell_math::lanes::{Bits, LaneColor, LaneVector, Lanes};
+use snell_math::spectrum::Spectrum;
 use snell_math::{Point3, Rgb, Vector3, portable};
 use snell_scene::scene;
 
@@ -9,6 +10,7 @@ use snell_scene::scene;
 pub struct Light {
     place: Place,
     intensity: Rgb,
+    spectrum: Option<Spectrum>,
     falloff: scene::Falloff,
 }
 
@@ -66,12 +68,17 @@ impl Light {
                 cosine_full: portable::cos(full_angle),
             },
         };
-        Self { place, intensity: light.intensity, falloff: light.falloff }
+        Self { place, intensity: light.intensity, spectrum: light.spectrum.clone(), falloff: light.falloff }
     }
 
     /// Its colour times its strength, as the scene gives it.
     pub fn intensity(&self) -> Rgb {
         self.intensity
+    }
+
+    /// Its spectrum times its strength, where the scene gives one.
+    pub fn spectrum(&self) -> Option<&Spectrum> {
+        self.spectrum.as_ref()
     }
 
     /// Where it is; the direction towards it for a directional one.

@@ -5,6 +5,7 @@
 //! (diffuse, highlight) and those that spawn rays (mirror, interface).
 
 use snell_math::lanes::{Bits, Floats, LaneColor, LaneVector, Lanes, WIDTH, power_to_f32};
+use snell_math::spectrum::Spectrum;
 use snell_math::{Rgb, Vector3};
 use snell_scene::Id;
 use snell_scene::scene;
@@ -218,6 +219,7 @@ pub struct Material {
     /// All lobes with their constant colours; those in `textured` are filled in at the hit.
     base: Bsdf,
     textured: Vec<(Slot, Id<scene::Texture>)>,
+    emission_spectrum: Option<Spectrum>,
     /// All of those can be evaluated side by side.
     is_plain: bool,
     /// The inside of the body, where it is transparent.
@@ -278,6 +280,7 @@ impl Material {
         let mut compiled = Self {
             base: Bsdf { shininess: material.shininess, one_sided: material.one_sided, ..Bsdf::BLACK },
             textured: Vec::new(),
+            emission_spectrum: material.emission_spectrum.clone(),
             is_plain: false,
             body: None,
             metal: material.metal.as_ref().map(|metal| MetalSurface {
@@ -324,6 +327,7 @@ impl Material {
         Self {
             base: Bsdf { ambient: gray, diffuse: gray, ..Bsdf::BLACK },
             textured: Vec::new(),
+            emission_spectrum: None,
             is_plain: true,
             body: None,
             metal: None,
@@ -354,6 +358,11 @@ impl Material {
             return metal.roughness == 0.0;
         }
         bends || !self.base.mirror.is_black() || self.textured.iter().any(|(slot, _)| *slot == Slot::Mirror)
+    }
+
+    /// The spectrum of its light, where the scene gives one.
+    pub fn emission_spectrum(&self) -> Option<&Spectrum> {
+        self.emission_spectrum.as_ref()
     }
 
     /// Its light, where it is the same everywhere.

@@ -12,8 +12,7 @@ use super::xyz_to_linear_srgb;
 
 const STEP_NM: f64 = 10.0;
 
-/// The weights of the second and the third component that make D65.
-const D65: Daylight = Daylight::scaled(-0.295, -0.689);
+const D65: Daylight = Daylight::D65;
 
 /// ∫ ȳ dλ in nanometres, of the functions as they are interpolated.
 pub(super) const LUMINOUS_NM: f64 = integral(&Daylight { weights: [0.0; 3] })[3];
@@ -39,6 +38,9 @@ pub struct Daylight {
 }
 
 impl Daylight {
+    /// The CIE's D65, which is white here.
+    pub const D65: Self = Self::scaled(-0.295, -0.689);
+
     /// Daylight of a correlated colour temperature in kelvin, between 4000 and 25000; others count as the nearer end.
     #[must_use]
     pub fn new(temperature_kelvin: f64) -> Self {

@@ -5,8 +5,10 @@
 //! of one or five nanometres' steps, and stay at the ends' values beyond them.
 
 use super::{
-    Daylight, HERO_WAVELENGTHS, HeroWavelengths, SmoothEmission, SmoothReflectance, blackbody, spectrum_to_xyz,
+    Daylight, HERO_WAVELENGTHS, HeroWavelengths, SmoothEmission, SmoothReflectance, VISIBLE_NM, blackbody,
+    color_matching, spectrum_to_xyz, xyz_to_rgb,
 };
+use crate::Rgb;
 
 /// A function of wavelength.
 ///
@@ -45,6 +47,51 @@ impl Spectrum {
         let temperature_kelvin = if temperature_kelvin > 500.0 { temperature_kelvin.min(1e6) } else { 500.0 };
         let luminance = spectrum_to_xyz(|nm| blackbody(temperature_kelvin, nm))[1];
         Self::Blackbody { temperature_kelvin, scale: 1.0 / luminance }
+    }
+
+    /// The CIE's illuminant A, a filament lamp: a black body of 2848 K with the constant c₂ = 0.014 35 m K of its time, which is one of
+    /// 2855.5 K by today's (CIE 015:2018, section 4.1.1). Scaled to Y = 1.
+    #[must_use]
+    pub fn illuminant_a() -> Self {
+        Self::blackbody(2848.0 * 0.014_387_768_8 / 0.014_35)
+    }
+
+    /// Light of measured values, scaled to Y = 1; `None` where they have nothing that eyes see.
+    ///
+    /// ```
+    /// use snell_math::spectrum::{MeasuredSpectrum, Spectrum};
+    /// let sodium = MeasuredSpectrum::new(vec![588.0, 589.3, 590.6], vec![0.0, 7.0, 0.0]).unwrap();
+    /// let [r, g, b] = Spectrum::light(sodium).unwrap().to_rgb().to_array();
+    /// assert!(r > g && g > 0.0 && b == 0.0);
+    /// ```
+    #[must_use]
+    pub fn light(measured: MeasuredSpectrum) -> Option<Self> {
+        let spectrum = Self::Measured(measured, 1.0);
+        let [_, luminance, _] = spectrum.to_xyz();
+        (luminance > 0.0 && luminance.is_finite()).then(|| spectrum.scaled(1.0 / luminance))
+    }
+
+    /// The tristimulus values, as [`spectrum_to_xyz`] has them, which asks at every nanometre; here measured values are asked at
+    /// every tenth of one, so that no narrow line is missed.
+    #[must_use]
+    pub fn to_xyz(&self) -> [f64; 3] {
+        let Self::Measured(..) = self else { return spectrum_to_xyz(|nm| self.at(nm)) };
+        let (mut sum, mut luminous) = ([0.0; 3], 0.0);
+        for tenth in 10 * VISIBLE_NM[0] as u32..=10 * VISIBLE_NM[1] as u32 {
+            let nm = f64::from(tenth) / 10.0;
+            let (observer, value) = (color_matching(nm), self.at(nm));
+            for (sum, response) in sum.iter_mut().zip(observer) {
+                *sum += response * value;
+            }
+            luminous += observer[1];
+        }
+        sum.map(|sum| sum / luminous)
+    }
+
+    /// The colour as light, brought into the gamut of sRGB by leaving out what is negative.
+    #[must_use]
+    pub fn to_rgb(&self) -> Rgb {
+        xyz_to_rgb(self.to_xyz()).map(|component| component.max(0.0))
     }
 
     /// This times a factor. A reflectance becomes measured values, every 5 nm, since no factor keeps it below 1.

@@ -110,3 +110,43 @@ fn a_black_body_is_a_number_everywhere() {
     }
     assert!((blackbody_rgb(6500.0).luminance() - 1.0).abs() < 1e-3);
 }
+
+#[test]
+fn the_cies_illuminants_have_its_chromaticities() {
+    // CIE 015:2018, table T.3, and Planck's locus at 2000 and 6500 K (Wyszecki and Stiles, "Color Science", table 1(3.11)).
+    let chromaticity = |spectrum: &Spectrum| {
+        let [x, y, z] = spectrum.to_xyz();
+        [x / (x + y + z), y / (x + y + z)]
+    };
+    let near = |spectrum: &Spectrum, expected: [f64; 2]| {
+        let found = chromaticity(spectrum);
+        (0..2).all(|i| (found[i] - expected[i]).abs() < 2e-4)
+    };
+    let daylight = |kelvin| Spectrum::Daylight(Daylight::new(kelvin), 1.0);
+    for (spectrum, expected) in [
+        (Spectrum::illuminant_a(), [0.447_58, 0.407_45]),
+        (daylight(5003.0), [0.345_67, 0.358_51]),
+        (daylight(5503.0), [0.332_43, 0.347_44]),
+        (Spectrum::Daylight(Daylight::D65, 1.0), [0.312_72, 0.329_03]),
+        (daylight(7504.0), [0.299_03, 0.314_88]),
+        (Spectrum::Constant(1.0), [1.0 / 3.0, 1.0 / 3.0]),
+        (Spectrum::blackbody(2000.0), [0.526_69, 0.413_31]),
+        (Spectrum::blackbody(6500.0), [0.313_52, 0.323_63]),
+    ] {
+        assert!(near(&spectrum, expected), "{spectrum:?}: {:?}, not {expected:?}", chromaticity(&spectrum));
+        assert!((spectrum.to_xyz()[1] - 1.0).abs() < 1e-3, "{spectrum:?} has the luminance of white");
+        assert!(!near(&spectrum, [expected[0] + 5e-4, expected[1]]), "another colour is told apart");
+    }
+}
+
+#[test]
+fn no_line_is_too_narrow_to_be_seen() {
+    let line = |nm: f64| MeasuredSpectrum::new(vec![nm - 0.2, nm, nm + 0.2], vec![0.0, 3.0, 0.0]).unwrap();
+    for nm in [486.13, 546.5, 589.3] {
+        let [x, y, z] = Spectrum::light(line(nm)).unwrap().to_xyz();
+        assert!((y - 1.0).abs() < 1e-12);
+        let [a, b, c] = color_matching(nm);
+        assert!((x / (x + y + z) - a / (a + b + c)).abs() < 1e-3 && (z / (x + y + z) - c / (a + b + c)).abs() < 1e-3);
+    }
+    assert_eq!(Spectrum::light(line(1200.0)), None);
+}

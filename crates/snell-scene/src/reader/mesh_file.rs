@@ -88,6 +88,7 @@ impl MaterialFile {
         let mut texture = |color: ColorFile| textures.push(color.resolve(images));
         Material {
             emission: self.emission.map(&mut texture),
+            emission_spectrum: None,
             ambient: self.ambient.map(&mut texture),
             diffuse: self.diffuse.map(&mut texture),
             specular: self.specular.map(&mut texture),

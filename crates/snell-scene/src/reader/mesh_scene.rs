@@ -64,6 +64,7 @@ fn scene_around(mut file: MeshFile, z_up: bool) -> Scene {
             name: Some(name.to_owned()),
             kind: LightKind::Directional { direction: -to_light, angle: 0.0 },
             intensity: Rgb::gray(strength),
+            spectrum: None,
             falloff: Falloff::None,
         });
     }

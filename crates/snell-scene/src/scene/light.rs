@@ -1,5 +1,6 @@
 //! Sources of light without extent.
 
+use snell_math::spectrum::Spectrum;
 use snell_math::{Point3, Rgb, Vector3};
 
 /// A light.
@@ -11,6 +12,8 @@ pub struct Light {
     pub kind: LightKind,
     /// Its colour times its strength: the irradiance it gives to a surface that faces it, at distance 1 where it falls off.
     pub intensity: Rgb,
+    /// Its spectrum, where the author gave one: that of `intensity`, which is its colour. Relative to equal energy of luminance 1.
+    pub spectrum: Option<Spectrum>,
     /// How that changes with distance; of no effect on a directional light.
     pub falloff: Falloff,
 }

@@ -1,5 +1,6 @@
 //! What surfaces do with light, and what solids do with the light inside.
 
+use snell_math::spectrum::Spectrum;
 use snell_math::{Dispersion, Rgb};
 
 use super::texture::Texture;
@@ -13,6 +14,8 @@ pub struct Material {
     pub name: Option<String>,
     /// Light it gives off by itself, unlit and casting none: the colour of a lamp or of a photograph to stand behind things.
     pub emission: Option<Id<Texture>>,
+    /// The spectrum of that light, where the author gave one; `emission` is its colour. Relative to equal energy of luminance 1.
+    pub emission_spectrum: Option<Spectrum>,
     /// The factor on the scene's ambient light; where absent, the diffuse colour.
     pub ambient: Option<Id<Texture>>,
     /// Diffuse reflectance: Lambert's cosine.

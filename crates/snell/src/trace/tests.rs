@@ -48,7 +48,7 @@ fn scene() -> CompiledScene {
     scene.objects.push(Object::shape(Shape::Plane { point: Point3::new(0.0, -0.5, 0.0), normal: Vector3::Y }));
     let position = Point3::new(3.0, 5.0, 4.0);
     let kind = LightKind::Point { position };
-    scene.lights.push(Light { name: None, kind, intensity: Rgb::WHITE, falloff: Falloff::None });
+    scene.lights.push(Light { name: None, kind, intensity: Rgb::WHITE, spectrum: None, falloff: Falloff::None });
     CompiledScene::build(&scene).expect("it compiles")
 }
 

@@ -16,4 +16,5 @@ mod paths;
 mod robust;
 mod seven_rays;
 mod spd;
+mod spectra;
 mod viewing;

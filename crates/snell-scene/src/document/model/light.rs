@@ -3,7 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::value::{Color, Either, Form, Forms, Located, Triple, one, white};
+use super::spectrum::LightColor;
+use super::value::{Color, Either, Form, Forms, Located, Triple, one};
 
 /// A light: exactly one of `point`, `directional` and `spot`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -30,10 +31,10 @@ pub struct PointLight {
     /// Where it is.
     #[schemars(extend("x-unit" = "world units"))]
     pub position: Triple,
-    /// Its colour.
+    /// Its colour, or a spectrum.
     #[serde(default = "white")]
     #[schemars(extend("default" = 1))]
-    pub color: Color,
+    pub color: LightColor,
     /// Multiplies its colour. A white surface that faces a light of intensity 1 without falloff has the colour 1.
     #[serde(default = "one")]
     #[schemars(range(min = 0))]
@@ -50,10 +51,10 @@ pub struct PointLight {
 pub struct DirectionalLight {
     /// The way the light travels, of any length but 0.
     pub direction: Located<Triple>,
-    /// Its colour.
+    /// Its colour, or a spectrum.
     #[serde(default = "white")]
     #[schemars(extend("default" = 1))]
-    pub color: Color,
+    pub color: LightColor,
     /// Multiplies its colour.
     #[serde(default = "one")]
     #[schemars(range(min = 0))]
@@ -87,10 +88,10 @@ pub struct SpotLight {
     /// From the middle to where the light begins to fade, at most `cone_angle`. The default is 0.8 times that.
     #[schemars(range(min = 0, max = 90), extend("x-unit" = "degrees"))]
     pub full_angle: Option<Located<f64>>,
-    /// Its colour.
+    /// Its colour, or a spectrum.
     #[serde(default = "white")]
     #[schemars(extend("default" = 1))]
-    pub color: Color,
+    pub color: LightColor,
     /// Multiplies its colour.
     #[serde(default = "one")]
     #[schemars(range(min = 0))]
@@ -99,6 +100,10 @@ pub struct SpotLight {
     #[serde(default)]
     #[schemars(extend("default" = "none"))]
     pub falloff: Located<Falloff>,
+}
+
+fn white() -> LightColor {
+    Either::A(Color::WHITE)
 }
 
 fn default_cone_angle() -> Located<f64> {

@@ -18,6 +18,7 @@ mod mesh;
 mod object;
 mod plot;
 mod shape;
+mod spectrum;
 mod texture;
 mod value;
 
@@ -43,6 +44,7 @@ pub use plot::{
     Align, Axis, AxisWord, Plot, PlotCurve, PlotData, PlotFit, PlotFunction, PlotLabel, PlotParametric, Tick, TicksWord,
 };
 pub use shape::{AxisBox, Cone, Cylinder, Disk, Lens, Plane, Rectangle, Sphere, Torus};
+pub use spectrum::{Illuminant, LightColor, LightSpectrum, MeasuredValues};
 pub use texture::{
     CheckerPattern, GradientPattern, ImagePattern, NoiseForm, NoisePattern, Paint, Texture, TextureSpace,
 };

@@ -4,17 +4,18 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::camera::GradientStop;
+use super::spectrum::{Illuminant, MeasuredValues};
 use super::value::{Color, Either, Form, Forms, Located, Rotation, Scale, TextureName, Triple, white};
 
 /// A colour, or a texture: what every term of a material takes.
 pub type Paint = Either<Color, Box<Texture>>;
 
 /// A colour for every point of a surface: exactly one pattern, and how it lies on the surface. The pattern is scaled, then
-/// rotated, then moved.
+/// rotated, then moved. In place of a pattern, `emission` takes light by its spectrum.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(
-    extend("oneOf" = [{"required": ["checker"]}, {"required": ["image"]}, {"required": ["gradient"]}, {"required": ["noise"]}, {"required": ["texture"]}]),
+    extend("oneOf" = [{"required": ["checker"]}, {"required": ["image"]}, {"required": ["gradient"]}, {"required": ["noise"]}, {"required": ["texture"]}, {"required": ["blackbody"]}, {"required": ["illuminant"]}, {"required": ["measured"]}]),
     extend("x-example" = "[material.floor]\ndiffuse = { checker = { colors = [0.9, 0.1], size = 1 } }\n\n[texture.wood]\nnoise = { form = \"wood\", colors = [\"#5a3214\", \"#a5703a\"], octaves = 3 }\nscale = 0.2\n\n[material.table]\ndiffuse = { texture = \"wood\" }\n"),
 )]
 pub struct Texture {
@@ -38,6 +39,16 @@ pub struct Texture {
     pub rotate: Option<Located<Rotation>>,
     /// Makes the pattern larger: one factor, or one along each axis, not 0.
     pub scale: Option<Located<Scale>>,
+    /// Light of a black body of this temperature, for `emission` alone: see `LightSpectrum`.
+    #[schemars(range(min = 500, max = 1000000), extend("x-unit" = "kelvin"))]
+    pub blackbody: Option<Located<f64>>,
+    /// Light of an illuminant of the CIE, for `emission` alone: see `LightSpectrum`.
+    pub illuminant: Option<Located<Illuminant>>,
+    /// Light of a measured spectrum, for `emission` alone: see `LightSpectrum`.
+    pub measured: Option<Located<MeasuredValues>>,
+    /// How bright light of a spectrum is: as white light of this value. The default is 1.
+    #[schemars(range(min = 0))]
+    pub luminance: Option<Located<f64>>,
 }
 
 impl Forms for Texture {

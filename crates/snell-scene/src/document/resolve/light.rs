@@ -12,8 +12,8 @@ impl Resolver<'_> {
         let name = light.name.as_ref().map(|name| name.value.clone());
         if let Some(spot) = &light.spot {
             let kind = self.spot(spot);
-            let intensity = spot.color.0 * spot.intensity;
-            return Light { name, kind, intensity, falloff: self.falloff(&spot.falloff) };
+            let (intensity, spectrum) = self.light_color(&spot.color, spot.intensity);
+            return Light { name, kind, intensity, spectrum, falloff: self.falloff(&spot.falloff) };
         }
         if let Some(directional) = &light.directional {
             self.direction(&directional.direction, "the light's direction", Vector3::Y);
@@ -21,18 +21,16 @@ impl Resolver<'_> {
                 direction: directional.direction.value.into(),
                 angle: portable::radians(directional.angle),
             };
-            return Light {
-                name,
-                kind,
-                intensity: directional.color.0 * directional.intensity,
-                falloff: Falloff::None,
-            };
+            let (intensity, spectrum) = self.light_color(&directional.color, directional.intensity);
+            return Light { name, kind, intensity, spectrum, falloff: Falloff::None };
         }
-        let (position, intensity, falloff) = match &light.point {
-            Some(point) => (point.position, point.color.0 * point.intensity, self.falloff(&point.falloff)),
-            None => ([0.0; 3], snell_math::Rgb::BLACK, Falloff::None),
+        let (position, (intensity, spectrum), falloff) = match &light.point {
+            Some(point) => {
+                (point.position, self.light_color(&point.color, point.intensity), self.falloff(&point.falloff))
+            }
+            None => ([0.0; 3], (snell_math::Rgb::BLACK, None), Falloff::None),
         };
-        Light { name, kind: LightKind::Point { position: position.into() }, intensity, falloff }
+        Light { name, kind: LightKind::Point { position: position.into() }, intensity, spectrum, falloff }
     }
 
     fn spot(&mut self, spot: &model::SpotLight) -> LightKind {

@@ -14,9 +14,17 @@ const DEFAULT_DIFFUSE: f32 = 0.8;
 
 impl Resolver<'_> {
     pub(super) fn material(&mut self, material: &model::Material, name: Option<&str>) -> Material {
+        let (emission, emission_spectrum) = match &material.emission {
+            Some(paint) => {
+                let (texture, spectrum) = self.emission(paint);
+                (Some(texture), spectrum)
+            }
+            None => (None, None),
+        };
         Material {
             name: name.map(str::to_owned),
-            emission: material.emission.as_ref().map(|paint| self.term(paint)),
+            emission,
+            emission_spectrum,
             ambient: material.ambient.as_ref().map(|paint| self.term(paint)),
             diffuse: material.diffuse.as_ref().map(|paint| self.term(paint)),
             specular: material.specular.as_ref().map(|paint| self.term(paint)),

@@ -17,6 +17,7 @@ mod placement;
 mod plot;
 mod shape;
 mod size;
+mod spectrum;
 mod texture;
 mod view;
 

@@ -57,6 +57,7 @@ impl Resolver<'_> {
     }
 
     fn texture(&mut self, texture: &model::Texture) -> Id<Texture> {
+        self.refuse_light(texture);
         if let Some(name) = &texture.texture {
             self.refuse_placement(texture);
             // A name that is missing here was left out for its own mistakes.

@@ -131,6 +131,7 @@ impl Builder {
             name: None,
             kind: LightKind::Point { position },
             intensity: color.unwrap_or(intensity),
+            spectrum: None,
             falloff: Falloff::None,
         }));
         scene

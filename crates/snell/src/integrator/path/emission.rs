@@ -251,7 +251,7 @@ impl Emission {
                     return None;
                 }
                 let density = probability * point.density * self.targets.density(point.point, direction);
-                let radiance = match emitter.radiance {
+                let radiance = match &emitter.radiance {
                     Some(radiance) => wavelengths.nm().map(|nm| radiance.at(nm)),
                     // Unknown until it is met from there, which light that sets out is not.
                     None => BLACK,

@@ -5,7 +5,7 @@
 
 use std::f64::consts::PI;
 
-use snell_math::spectrum::SmoothEmission;
+use snell_math::spectrum::{SmoothEmission, Spectrum};
 use snell_math::warp::Cone;
 use snell_math::{Point3, Rgb, Vector3, portable};
 
@@ -26,7 +26,7 @@ const EVEN: f64 = 0.2;
 #[derive(Debug)]
 pub struct Lights {
     /// Those of the scene that give light at all: their number there and their spectrum at intensity one.
-    pub points: Vec<(u32, SmoothEmission)>,
+    pub points: Vec<(u32, Spectrum)>,
     /// The surfaces that shine.
     pub surfaces: Vec<Emitter>,
     /// The background, where it is not black.
@@ -43,7 +43,7 @@ pub struct Emitter {
     /// Where it is.
     pub place: EmittingSurface,
     /// Its radiance, where it is the same everywhere.
-    pub radiance: Option<SmoothEmission>,
+    pub radiance: Option<Spectrum>,
     /// Light comes from the outward side alone.
     pub one_sided: bool,
     /// The mean radiance, a guess where it is not the same everywhere.
@@ -55,6 +55,11 @@ impl Emitter {
     pub fn mean(&self) -> f64 {
         self.mean
     }
+}
+
+/// The spectrum that the scene gives, or a smooth one of its colour.
+fn spectrum_of(given: Option<&Spectrum>, color: Rgb) -> Spectrum {
+    given.cloned().unwrap_or_else(|| Spectrum::Emission(SmoothEmission::new(color)))
 }
 
 /// Which of the lights.
@@ -91,7 +96,7 @@ impl Lights {
         for (light, number) in scene.lights.iter().zip(0..) {
             let intensity = light.intensity();
             if !intensity.is_black() {
-                points.push((number, SmoothEmission::new(intensity)));
+                points.push((number, spectrum_of(light.spectrum(), intensity)));
             }
         }
         let emits = |material: u32| scene.materials[material as usize].emits();
@@ -102,7 +107,7 @@ impl Lights {
             .map(|place| {
                 let material = &scene.materials[place.material as usize];
                 let constant = material.constant_emission();
-                let radiance = constant.map(SmoothEmission::new);
+                let radiance = constant.map(|color| spectrum_of(material.emission_spectrum(), color));
                 let mean = constant.map_or(0.5, |color| f64::from(color.mean()));
                 Emitter { place, radiance, one_sided: material.is_one_sided(), mean }
             })
@@ -153,9 +158,9 @@ impl Lights {
     }
 
     /// The radiance of a surface, where it is the same everywhere.
-    pub fn constant_radiance(&self, index: LightIndex) -> Option<SmoothEmission> {
+    pub fn constant_radiance(&self, index: LightIndex) -> Option<&Spectrum> {
         match index {
-            LightIndex::Surface(surface) => self.surfaces[surface].radiance,
+            LightIndex::Surface(surface) => self.surfaces[surface].radiance.as_ref(),
             LightIndex::Point(_) | LightIndex::Environment => None,
         }
     }
@@ -275,8 +280,10 @@ impl Lights {
                 if emitter.one_sided && place.normal.dot(wi) >= 0.0 || place.density <= 0.0 {
                     return None;
                 }
-                let light_over_density =
-                    emitter.radiance.map(|radiance| wavelengths.nm().map(|nm| radiance.at(nm) / place.density));
+                let light_over_density = emitter
+                    .radiance
+                    .as_ref()
+                    .map(|radiance| wavelengths.nm().map(|nm| radiance.at(nm) / place.density));
                 Some(Arriving { light, wi, distance, light_over_density, density: Some(place.density) })
             }
             LightIndex::Environment => {

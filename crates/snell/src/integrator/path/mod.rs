@@ -304,7 +304,8 @@ impl Path {
     fn find_light<O: Observer>(&self, step: &mut Step<'_, '_, '_, O>, interaction: &SurfaceInteraction, color: Rgb) {
         let wavelengths = &step.path.wavelengths;
         let found = self.lights.surface_at(interaction);
-        let radiance = match found.and_then(|index| self.lights.constant_radiance(index)) {
+        let of_material = step.scene.materials[interaction.material as usize].emission_spectrum();
+        let radiance = match of_material.or_else(|| self.lights.constant_radiance(found?)) {
             Some(radiance) => wavelengths.nm().map(|nm| radiance.at(nm)),
             None => self.colors.light(color, wavelengths.nm(), wavelengths.white),
         };

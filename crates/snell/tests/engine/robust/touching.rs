@@ -89,6 +89,7 @@ fn light_reaches_the_table_below_the_glass() {
                     name: None,
                     kind: scene::LightKind::Directional { direction: -Vector3::Y, angle: 0.0 },
                     intensity: Rgb::WHITE,
+                    spectrum: None,
                     falloff: scene::Falloff::None,
                 }));
                 for (x, z) in [(0.1, 0.2), (-0.33, 0.021), (0.4, -0.1)] {
