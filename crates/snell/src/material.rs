@@ -244,8 +244,12 @@ pub struct MetalSurface {
 pub struct Body {
     /// Its index of refraction.
     pub ior: snell_math::Dispersion,
+    /// What paths take for it, where that is another.
+    pub measured_ior: Option<snell_math::Dispersion>,
     /// What light meets inside.
     pub medium: scene::Medium,
+    /// What it absorbs at each wavelength, where that was measured.
+    pub extinction: Option<scene::Extinction>,
     /// Which body wins where several overlap.
     pub priority: i32,
     /// How rough its boundary is, from 0 to 1.
@@ -255,6 +259,11 @@ pub struct Body {
 }
 
 impl Body {
+    /// Its index of refraction for paths.
+    pub fn path_ior(&self) -> &snell_math::Dispersion {
+        self.measured_ior.as_ref().unwrap_or(&self.ior)
+    }
+
     /// False where its boundary does nothing to light that comes from the world around: of the same index at all wavelengths, without a
     /// film.
     pub fn bends_light(&self) -> bool {
@@ -297,7 +306,9 @@ impl Material {
                 Some(Interface { fresnel: dielectric.fresnel, reflect: Rgb::BLACK, transmit: Rgb::BLACK });
             compiled.body = Some(Body {
                 ior: dielectric.ior.clone(),
+                measured_ior: dielectric.measured_ior.clone(),
                 medium: dielectric.medium,
+                extinction: dielectric.extinction.clone(),
                 priority: dielectric.priority,
                 roughness: dielectric.roughness,
                 film: dielectric.film.clone(),

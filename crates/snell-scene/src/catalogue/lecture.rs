@@ -24,6 +24,14 @@ pub(super) static LECTURE: [Entry; 11] = [
     printed("diamond", &[], "diamond", 2.419),
 ];
 
+/// By the lecture's name, the entry of what was measured of the same material.
+pub(super) const MEASURED: [(&str, &str); 4] = [
+    ("water", "water-20C"),
+    ("rock salt", "NaCl"),
+    ("cubic zirconia", "cubic-zirconia-dispersive"),
+    ("diamond", "diamond-dispersive"),
+];
+
 const fn printed(key: &'static str, aliases: &'static [&'static str], description: &'static str, index: f64) -> Entry {
     Entry {
         key,

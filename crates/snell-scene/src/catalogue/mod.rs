@@ -6,7 +6,8 @@
 //!   1.544;
 //! - measured materials with dispersion, so that white light splits: every Schott glass under its own name (`N-BK7`,
 //!   `SF10`), and crystals, water and plastics under names that differ from the lecture's: `water-20C`, `fused-silica`,
-//!   `PMMA`, `NaCl`, `sapphire-o`, `cubic-zirconia-dispersive`, `diamond-dispersive`. An old name of a glass that is no
+//!   `PMMA`, `NaCl`, `sapphire-o`, `cubic-zirconia-dispersive`, `diamond-dispersive`. Path tracing takes them for the lecture's too
+//!   ([`Entry::measured`]). An old name of a glass that is no
 //!   more in Schott's catalogue, such as `BK7`, means the glass that took its place, which has N- before it.
 //!
 //! Schott's indices are relative to air, as its data sheets give them, and by wavelengths in air; the difference to vacuum, a
@@ -79,6 +80,20 @@ impl Entry {
             Formula::Constant(index) => Dispersion::Constant(index),
             Formula::Sellmeier(constant, terms) => Dispersion::Sellmeier { constant, terms: terms.to_vec() },
         }
+    }
+
+    /// What was measured of the material of which the lecture prints one index: what path tracing takes for it. `None` where nothing was,
+    /// and for what is measured itself.
+    ///
+    /// ```
+    /// use snell_scene::catalogue;
+    /// let water = catalogue::lookup("water").unwrap();
+    /// assert_eq!(water.measured().unwrap().key, "water-20C");
+    /// assert!(catalogue::lookup("ice").unwrap().measured().is_none());
+    /// ```
+    pub fn measured(&self) -> Option<&'static Self> {
+        let (_, key) = lecture::MEASURED.iter().find(|(printed, _)| *printed == self.key)?;
+        measured::MATERIALS.iter().find(|entry| entry.key == *key)
     }
 
     /// What the material absorbs: pairs of ascending wavelengths in nanometres and the coefficient of extinction k, the imaginary

@@ -101,6 +101,8 @@ impl MaterialFile {
                 roughness: 0.0,
                 film: None,
                 medium: Medium::default(),
+                measured_ior: None,
+                extinction: None,
                 priority: 0,
             }),
             name: self.name,

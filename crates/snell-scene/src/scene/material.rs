@@ -1,6 +1,8 @@
 //! What surfaces do with light, and what solids do with the light inside.
 
-use snell_math::spectrum::Spectrum;
+use std::f64::consts::PI;
+
+use snell_math::spectrum::{MeasuredSpectrum, Spectrum};
 use snell_math::{Dispersion, Rgb};
 
 use super::texture::Texture;
@@ -40,6 +42,8 @@ pub struct Material {
 pub struct Dielectric {
     /// The index of refraction.
     pub ior: Dispersion,
+    /// What paths take for it, where `ior` is one that the lecture prints of a material that was measured.
+    pub measured_ior: Option<Dispersion>,
     /// Reflection and transmission follow Fresnel's equations, and the coefficients below scale them; or else the
     /// coefficients are the shares themselves. Under total internal reflection all light is reflected either way.
     pub fresnel: bool,
@@ -53,8 +57,35 @@ pub struct Dielectric {
     pub film: Option<Film>,
     /// What light meets inside.
     pub medium: Medium,
+    /// What it absorbs at each wavelength, where that was measured; the medium's absorption is the colour of it.
+    pub extinction: Option<Extinction>,
     /// Where bodies overlap, the one of higher priority is there; at equal priority, the one entered last.
     pub priority: i32,
+}
+
+/// What a material absorbs, as it was measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Extinction {
+    /// The coefficient of extinction k, the imaginary part of the index, by wavelength.
+    pub k: MeasuredSpectrum,
+    /// How many millimetres a world unit is long.
+    pub unit_mm: f64,
+}
+
+impl Extinction {
+    /// The coefficient of absorption at a wavelength in nanometres, per world unit: 4π k / λ (Born and Wolf, "Principles of Optics",
+    /// section 14.1).
+    ///
+    /// ```
+    /// use snell_math::spectrum::MeasuredSpectrum;
+    /// use snell_scene::scene::Extinction;
+    /// let k = MeasuredSpectrum::new(vec![500.0], vec![1e-7]).unwrap();
+    /// let per_metre = Extinction { k, unit_mm: 1000.0 }.coefficient(500.0);
+    /// assert!((per_metre - 4.0 * std::f64::consts::PI * 1e-7 / 500e-9).abs() < 1e-12);
+    /// ```
+    pub fn coefficient(&self, wavelength_nm: f64) -> f64 {
+        4.0 * PI * self.k.at(wavelength_nm).max(0.0) / (wavelength_nm * 1e-6) * self.unit_mm
+    }
 }
 
 /// A thin film on a surface.

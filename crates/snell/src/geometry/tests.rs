@@ -23,6 +23,8 @@ fn materials(scene: &mut Scene) -> [Id<Material>; 2] {
         roughness: 0.0,
         film: None,
         medium: Medium::default(),
+        measured_ior: None,
+        extinction: None,
         priority: 0,
     };
     let glass = scene.materials.push(Material { dielectric: Some(dielectric), ..Material::default() });

@@ -31,6 +31,8 @@ fn scene() -> CompiledScene {
         roughness: 0.0,
         film: None,
         medium,
+        measured_ior: None,
+        extinction: None,
         priority: 0,
     };
     let kinds = [

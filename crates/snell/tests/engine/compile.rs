@@ -118,6 +118,8 @@ fn glass_mesh(faces: usize) -> Scene {
         roughness: 0.0,
         film: None,
         medium: Medium::default(),
+        measured_ior: None,
+        extinction: None,
         priority: 0,
     };
     let material = scene.materials.push(Material { dielectric: Some(dielectric), ..Material::default() });

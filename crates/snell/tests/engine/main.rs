@@ -6,6 +6,7 @@
 mod files;
 mod stage;
 
+mod catalogue;
 mod compile;
 mod determinism;
 mod explain;

@@ -1,7 +1,7 @@
 //! Materials as the author writes them: the lecture's terms, and transparent bodies.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::texture::Paint;
 use super::value::{Color, Either, Form, Forms, Located, MaterialName};
@@ -62,7 +62,8 @@ pub type MaterialChoice = Either<MaterialName, Box<Material>>;
 #[schemars(extend("x-example" = "[material.bottle]\ndielectric = { ior = 1.52, absorption = { color = [0.2, 0.7, 0.3], distance = 0.5 } }\n"))]
 pub struct Dielectric {
     /// The index of refraction: a number, the name of a material or glass such as "water", "diamond" or "N-BK7", a glass of a
-    /// file such as "hoya.agf#FCD1" or "page.yml", or a dispersion formula.
+    /// file such as "hoya.agf#FCD1" or "page.yml", or a dispersion formula. For the lecture's water, rock salt, cubic zirconia and diamond
+    /// `path` takes what was measured at each wavelength, `whitted` the one number that the lecture prints.
     #[schemars(extend("minimum" = 0.1, "maximum" = 100, "default" = 1.5))]
     pub ior: Located<Ior>,
     /// Reflection and refraction follow Fresnel's equations; `reflect` and `transmit` scale them. If false, `reflect` and
@@ -77,8 +78,9 @@ pub struct Dielectric {
     pub roughness: f32,
     /// A thin film on the surface, whose colours `path` shows: a soap bubble's, oil's, a coating's.
     pub film: Option<Film>,
-    /// How the inside absorbs light on its way.
-    pub absorption: Option<Absorption>,
+    /// How the inside absorbs light on its way: "catalogue" for what was measured of the glass that `ior` names, by the scene's `unit`; or a
+    /// colour after a distance.
+    pub absorption: Option<Located<AbsorptionChoice>>,
     /// How the inside scatters light, as milk does.
     pub scattering: Option<Scattering>,
     /// Where transparent bodies overlap, the one of higher priority is there.
@@ -175,6 +177,21 @@ pub struct Sellmeier {
     /// The squares c of the resonant wavelengths, as many as there are b.
     #[schemars(length(min = 1, max = 8), extend("x-unit" = "µm²"))]
     pub c: Located<Vec<f64>>,
+}
+
+/// A word, or a colour after a distance.
+pub type AbsorptionChoice = Either<AbsorptionWord, Absorption>;
+
+/// Where absorption is known from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum AbsorptionWord {
+    /// The glass's internal transmittance as it was measured: at each wavelength in `path`, its colour in `whitted`.
+    Catalogue,
+}
+
+impl Forms for AbsorptionWord {
+    const FORMS: &'static [Form] = &[Form::Text];
 }
 
 /// Absorption by distance (Beer and Lambert): white light has the colour `color` after `distance`.

@@ -35,7 +35,7 @@ pub use lens::{
 };
 pub use light::{DirectionalLight, Falloff, FalloffLaw, Light, PointLight, PolynomialFalloff, SpotLight};
 pub use material::{
-    Absorption, Cauchy, ComplexIndex, Dielectric, Film, Ior,
+    Absorption, AbsorptionChoice, AbsorptionWord, Cauchy, ComplexIndex, Dielectric, Film, Ior,
     IorFormula, Material, MaterialChoice, Metal, Scattering, Sellmeier,
 };
 pub use mesh::Mesh;
@@ -69,7 +69,8 @@ pub struct Document {
     /// Ambient light: what reaches every surface from all around. It multiplies each material's `ambient` colour.
     #[schemars(extend("default" = 0))]
     pub ambient: Color,
-    /// How long a world unit is: a word, or a number of millimetres. Only what is measured asks for it: real lenses of cameras.
+    /// How long a world unit is: a word, or a number of millimetres. Only what is measured asks for it: real lenses of cameras, and
+    /// absorption of the catalogue.
     #[schemars(extend("exclusiveMinimum" = 0, "x-unit" = "mm"))]
     pub unit: Option<Located<Unit>>,
     /// The picture: its size, and how colours become display colours.

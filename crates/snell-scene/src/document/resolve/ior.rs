@@ -13,18 +13,42 @@ const VISIBLE: [f64; 2] = [0.38, 0.78];
 /// Between these wavelengths, in nanometres, is more than 99.9 % of the light that eyes see of daylight.
 const MOSTLY_SEEN_NM: [f64; 2] = [410.0, 700.0];
 
+/// What is known of a material by its `ior`.
+#[derive(Debug)]
+pub(super) struct Optics {
+    /// Its index.
+    pub ior: Dispersion,
+    /// What was measured of it, where `ior` is the lecture's number.
+    pub measured: Option<Dispersion>,
+    /// Pairs of a wavelength in nanometres and the coefficient of extinction; empty where it is not known.
+    pub extinction: Vec<[f64; 2]>,
+}
+
+impl From<Dispersion> for Optics {
+    fn from(ior: Dispersion) -> Self {
+        Self { ior, measured: None, extinction: Vec::new() }
+    }
+}
+
 impl Resolver<'_> {
+    /// The index of what only paths ask for: films, lenses of cameras.
     pub(super) fn ior(&mut self, ior: &Located<Ior>) -> Dispersion {
+        let Optics { ior, measured, .. } = self.optics(ior);
+        measured.unwrap_or(ior)
+    }
+
+    /// All that is known of a material by its index.
+    pub(super) fn optics(&mut self, ior: &Located<Ior>) -> Optics {
         match &ior.value {
-            Either::A(number) => Dispersion::Constant(*number),
+            Either::A(number) => Dispersion::Constant(*number).into(),
             Either::B(Either::A(name)) if catalogue::is_glass_file(name) => self.glass_of_file(name, &ior.span),
             Either::B(Either::A(name)) => self.named_glass(name, &ior.span),
-            Either::B(Either::B(formula)) => self.formula(formula, ior),
+            Either::B(Either::B(formula)) => self.formula(formula, ior).into(),
         }
     }
 
     /// A material of the catalogue.
-    fn named_glass(&mut self, name: &str, span: &Option<Span>) -> Dispersion {
+    fn named_glass(&mut self, name: &str, span: &Option<Span>) -> Optics {
         let Some(entry) = catalogue::lookup(name) else {
             let diagnostic = Diagnostic::error(format!("there is no material {name:?} of known index"))
                 .at_optional(span.clone(), "not in the catalogue");
@@ -32,15 +56,22 @@ impl Resolver<'_> {
                 Some(near) => diagnostic.help(format!("did you mean {near:?}?")),
                 None => diagnostic.help("write the index as a number, such as 1.5"),
             });
-            return Dispersion::Constant(1.0);
+            return Dispersion::Constant(1.0).into();
         };
-        self.warn_outside(&Glass::from(entry), span);
-        entry.dispersion()
+        let glass = Glass::from(entry);
+        self.warn_outside(&glass, span);
+        let measured = entry.measured().map(catalogue::Entry::dispersion);
+        Optics { ior: glass.dispersion, measured, extinction: glass.extinction }
     }
 
     /// A glass of a file: `file.agf#NAME`, or the only one of a file.
-    fn glass_of_file(&mut self, name: &str, span: &Option<Span>) -> Dispersion {
-        let nothing = Dispersion::Constant(1.0);
+    fn glass_of_file(&mut self, name: &str, span: &Option<Span>) -> Optics {
+        let nothing = Optics::from(Dispersion::Constant(1.0));
+        let of_glass = |glass: &Glass| Optics {
+            ior: glass.dispersion.clone(),
+            measured: None,
+            extinction: glass.extinction.clone(),
+        };
         let (path, wanted) = catalogue::split(name);
         let located = Located { value: path.to_owned(), span: span.clone() };
         let Some((path, bytes)) = self.file(&located) else { return nothing };
@@ -50,7 +81,7 @@ impl Resolver<'_> {
         match (found.next(), found.next()) {
             (Some(glass), None) => {
                 self.warn_outside(glass, span);
-                return glass.dispersion.clone();
+                return of_glass(glass);
             }
             (Some(first), Some(_)) if wanted.is_none() => {
                 let message = format!("the file {path:?} has several glasses, and none is named");
@@ -58,7 +89,7 @@ impl Resolver<'_> {
                 self.diagnostics.push(Diagnostic::error(message).at_optional(span.clone(), "which?").help(help));
                 return nothing;
             }
-            (Some(glass), Some(_)) => return glass.dispersion.clone(),
+            (Some(glass), Some(_)) => return of_glass(glass),
             (None, _) => {}
         }
         if let Some(problem) =

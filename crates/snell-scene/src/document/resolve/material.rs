@@ -1,12 +1,16 @@
 //! Materials.
 
+use std::f64::consts::LN_2;
+
+use snell_math::spectrum::{MeasuredSpectrum, d65, spectrum_to_rgb, spectrum_to_xyz};
 use snell_math::{Rgb, portable};
 
 use super::Resolver;
+use super::ior::Optics;
 use crate::catalogue;
-use crate::diagnostic::{Diagnostic, did_you_mean};
+use crate::diagnostic::{Diagnostic, Span, did_you_mean};
 use crate::document::model::{self, Either, Located, MaterialChoice, Paint};
-use crate::scene::{Dielectric, Film, Material, Medium, Metal, MetalIndex};
+use crate::scene::{Dielectric, Extinction, Film, Material, Medium, Metal, MetalIndex};
 use crate::table::Id;
 
 /// The diffuse colour of objects without a material.
@@ -70,8 +74,14 @@ impl Resolver<'_> {
                 }
             }
         }
-        let ior = self.ior(&dielectric.ior);
-        let medium = self.medium(dielectric);
+        let Optics { ior, measured: measured_ior, extinction } = self.optics(&dielectric.ior);
+        let extinction = match &dielectric.absorption {
+            Some(Located { value: Either::A(model::AbsorptionWord::Catalogue), span }) => {
+                self.extinction(&extinction, &dielectric.ior.span, span)
+            }
+            _ => None,
+        };
+        let medium = self.medium(dielectric, extinction.as_ref());
         let film = dielectric.film.as_ref().map(|film| self.film(film));
         let mut coefficient = |paint: &Option<Located<Paint>>| match paint {
             Some(paint) => self.term(paint),
@@ -85,6 +95,8 @@ impl Resolver<'_> {
             roughness: dielectric.roughness,
             film,
             medium,
+            measured_ior,
+            extinction,
             priority: dielectric.priority,
         }
     }
@@ -133,9 +145,35 @@ impl Resolver<'_> {
         Film { thickness_nm: film.thickness, ior: self.ior(&film.ior) }
     }
 
-    fn medium(&mut self, dielectric: &model::Dielectric) -> Medium {
-        let mut medium = Medium::default();
-        if let Some(absorption) = &dielectric.absorption {
+    /// What was measured of the absorption of a glass, in the scene's units.
+    fn extinction(&mut self, known: &[[f64; 2]], ior: &Option<Span>, span: &Option<Span>) -> Option<Extinction> {
+        let mut diagnostic = None;
+        let measured =
+            MeasuredSpectrum::new(known.iter().map(|[nm, _]| *nm).collect(), known.iter().map(|[_, k]| *k).collect());
+        if measured.is_err() {
+            let what = Diagnostic::error("what this material absorbs is not in the catalogue");
+            let what = what.at_optional(span.clone(), "nothing is known of it");
+            let what = match ior {
+                Some(ior) => what.related(ior.clone(), "of this material"),
+                None => what,
+            };
+            diagnostic = Some(what.help(
+                "Schott's glasses, such as \"N-BK7\", have it; else write `absorption = { color = …, distance = … }`",
+            ));
+        } else if self.unit_mm.is_none() {
+            let message = "absorption of the catalogue is measured by the millimetre, but how long a world unit is has not been said";
+            let what = Diagnostic::error(message).at_optional(span.clone(), "needs the scene's `unit`");
+            diagnostic = Some(what.help(
+                "write `unit = \"cm\"` at the top of the scene, or \"mm\", \"m\", \"in\" or a number of millimetres",
+            ));
+        }
+        self.diagnostics.list.extend(diagnostic);
+        Some(Extinction { k: measured.ok()?, unit_mm: self.unit_mm? })
+    }
+
+    fn medium(&mut self, dielectric: &model::Dielectric, extinction: Option<&Extinction>) -> Medium {
+        let mut medium = Medium { absorption: extinction.map_or(Rgb::BLACK, absorption_color), ..Medium::default() };
+        if let Some(Located { value: Either::B(absorption), .. }) = &dielectric.absorption {
             let color = absorption.color.value.0;
             if color.to_array().iter().all(|&c| c > 0.0 && c <= 1.0) {
                 medium.absorption = color.map(|c| finite((-portable::ln(f64::from(c)) / absorption.distance).max(0.0)));
@@ -155,6 +193,17 @@ impl Resolver<'_> {
         }
         medium
     }
+}
+
+/// The coefficients of absorption in red, green and blue that daylight sees of measured ones, over a way on which half of it is left.
+fn absorption_color(extinction: &Extinction) -> Rgb {
+    let [_, mean, _] = spectrum_to_xyz(|nm| d65(nm) * extinction.coefficient(nm));
+    if !(mean > 0.0 && mean.is_finite()) {
+        return Rgb::BLACK;
+    }
+    let distance = LN_2 / mean;
+    let left = spectrum_to_rgb(|nm| d65(nm) * portable::exp(-extinction.coefficient(nm) * distance));
+    left.map(|share| finite((-portable::ln(f64::from(share.clamp(1e-6, 1.0))) / distance).max(0.0)))
 }
 
 /// As `f32`, the largest where it is larger: after such a distance nothing is left either way.

@@ -179,6 +179,8 @@ impl Builder {
                 roughness: 0.0,
                 film: None,
                 medium: Medium::default(),
+                measured_ior: None,
+                extinction: None,
                 priority: 0,
             }),
             one_sided,

@@ -83,13 +83,13 @@ impl PathMaterials {
         let indices: Vec<Dispersion> = scene
             .materials
             .iter()
-            .map(|material| material.body.as_ref().map_or(Dispersion::Constant(1.0), |body| body.ior.clone()))
+            .map(|material| material.body.as_ref().map_or(Dispersion::Constant(1.0), |body| body.path_ior().clone()))
             .collect();
         let bodies: Vec<u32> =
             (0..).zip(&scene.materials).filter(|(_, material)| material.body.is_some()).map(|(i, _)| i).collect();
         let materials = (0..).zip(&scene.materials).map(|(number, material)| PathMaterial {
             constant: material.constant_bsdf().map(|bsdf| colors_of(bsdf).map(Reflectance::new)),
-            body: material.body.as_ref().and_then(|body| BodySpectra::new(&body.medium)),
+            body: material.body.as_ref().and_then(|body| BodySpectra::new(&body.medium, body.extinction.as_ref())),
             clear: clear(material),
             film: match (&material.body, &material.metal) {
                 (Some(body), _) => body.film.clone(),
@@ -225,7 +225,7 @@ fn ggx(roughness: f32) -> Option<Ggx> {
 fn rough_boundary(number: u32, material: &Material, indices: &[Dispersion], bodies: &[u32]) -> Option<RoughBoundary> {
     let body = material.body.as_ref()?;
     let ggx = ggx(body.roughness)?;
-    let own = body.ior.index(SODIUM_D);
+    let own = body.path_ior().index(SODIUM_D);
     let neighbours = bodies.iter().copied().filter(|&other| other != number).take(MOST_NEIGHBOURS).map(Some);
     let compensations = std::iter::once(None).chain(neighbours).filter_map(|other| {
         let index = own / other.map_or(1.0, |other| indices[other as usize].index(SODIUM_D));

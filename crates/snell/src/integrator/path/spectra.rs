@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 
 use snell_math::spectrum::{HERO_WAVELENGTHS, HeroWavelengths, SmoothLattice, SmoothReflectance};
 use snell_math::{Rgb, portable};
-use snell_scene::scene::Medium;
+use snell_scene::scene::{Extinction, Medium};
 
 /// Values at the wavelengths of a path.
 pub type Spectral = [f64; HERO_WAVELENGTHS];
@@ -129,12 +129,28 @@ impl Colors {
 }
 
 /// What a body does to light inside, per world unit of length.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct BodySpectra {
-    absorption: Option<Coefficient>,
+    absorption: Option<Absorption>,
     scattering: Option<Coefficient>,
     /// The mean cosine of scattering.
     pub anisotropy: f64,
+}
+
+/// What a body absorbs: as a colour, or as it was measured.
+#[derive(Clone, Debug)]
+enum Absorption {
+    Color(Coefficient),
+    Measured(Extinction),
+}
+
+impl Absorption {
+    fn at(&self, nm: Spectral) -> Spectral {
+        match self {
+            Self::Color(coefficient) => coefficient.at(nm),
+            Self::Measured(extinction) => nm.map(|nm| extinction.coefficient(nm)),
+        }
+    }
 }
 
 /// A coefficient of extinction as the transmittance of a slab, whose colour a smooth spectrum has.
@@ -163,16 +179,20 @@ impl Coefficient {
 
 impl BodySpectra {
     /// `None` where light passes unchanged.
-    pub fn new(medium: &Medium) -> Option<Self> {
-        let (absorption, scattering) = (Coefficient::new(medium.absorption), Coefficient::new(medium.scattering));
+    pub fn new(medium: &Medium, extinction: Option<&Extinction>) -> Option<Self> {
+        let absorption = match extinction {
+            Some(extinction) => Some(Absorption::Measured(extinction.clone())),
+            None => Coefficient::new(medium.absorption).map(Absorption::Color),
+        };
+        let scattering = Coefficient::new(medium.scattering);
         let anisotropy = f64::from(medium.anisotropy);
         (absorption.is_some() || scattering.is_some()).then_some(Self { absorption, scattering, anisotropy })
     }
 
     /// The coefficients of absorption and scattering.
     pub fn at(&self, nm: Spectral) -> [Spectral; 2] {
-        [self.absorption, self.scattering]
-            .map(|coefficient| coefficient.map_or(BLACK, |coefficient| coefficient.at(nm)))
+        let absorption = self.absorption.as_ref().map_or(BLACK, |absorption| absorption.at(nm));
+        [absorption, self.scattering.map_or(BLACK, |coefficient| coefficient.at(nm))]
     }
 
     /// The share of light that is left after a distance.
