@@ -1,6 +1,6 @@
 //! `snell check`: reads and compiles scenes, and tells all that is wrong with them.
 
-use snell::compile::CompiledScene;
+use snell::compile::{CompiledScene, overlapping_bodies};
 use snell::drawing::{self, DrawingSettings};
 use snell::render::RenderSettings;
 use snell::scene::{Diagnostic, Diagnostics};
@@ -42,7 +42,9 @@ fn check(name: &str) -> Result<Diagnostics, Failure> {
             if let Err(error) = drawing::check(&compiled, &DrawingSettings::new(&scene)) {
                 diagnostics.push(Diagnostic::error(error.to_string()));
             }
+            let overlaps = overlapping_bodies(&compiled);
             diagnostics.list.extend(compiled.warnings);
+            diagnostics.list.extend(overlaps);
         }
         Err(error) => diagnostics.list.extend(error.diagnostics),
     }

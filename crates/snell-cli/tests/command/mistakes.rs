@@ -155,6 +155,29 @@ fn check_reads_all_and_renders_nothing() {
 }
 
 #[test]
+fn every_built_in_scene_is_clean_and_crossing_glass_is_told() {
+    let folder = Folder::new();
+    let scenes = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes")).unwrap();
+    let names: Vec<String> = scenes
+        .filter_map(|entry| Some(entry.unwrap().file_name().to_str()?.strip_suffix(".toml")?.to_owned()))
+        .collect();
+    assert!(names.len() > 20);
+    let said = folder.good(&format!("check {}", names.join(" "))).text();
+    assert_eq!(said, names.iter().map(|name| format!("{name}: no mistakes\n")).collect::<String>());
+    folder.write(
+        "crossing.toml",
+        "[material.a]\ndielectric = {}\n[material.b]\ndielectric = { ior = 1.33 }\n\
+         [[object]]\nsphere = {}\nmaterial = \"a\"\n[[object]]\nsphere = { center = [1, 0, 0] }\nmaterial = \"b\"\n",
+    );
+    let run = folder.good("check crossing.toml");
+    assert_eq!(run.text(), "crossing.toml: no errors, 1 warning\n");
+    assert!(
+        run.stderr.contains("cross, and neither has priority") && run.stderr.contains("crossing.toml:5:"),
+        "{run:?}"
+    );
+}
+
+#[test]
 fn lost_light_is_told_with_what_to_do() {
     let folder = Folder::new();
     let run = folder.good("render one-glass-sphere --width 16 --depth 2 --json");

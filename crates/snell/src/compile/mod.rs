@@ -4,15 +4,19 @@ mod count;
 mod images;
 mod names;
 mod objects;
+mod overlap;
 #[cfg(test)]
 mod tests;
+
+use std::collections::BTreeMap;
 
 use snell_math::dispersion::fraunhofer::SODIUM_D;
 use snell_math::{Point3, Ray, Rgb};
 use snell_scene::scene::{self, Scene};
-use snell_scene::{Diagnostic, Severity};
+use snell_scene::{Diagnostic, Severity, Span};
 
 pub use names::ObjectNames;
+pub use overlap::overlapping_bodies;
 
 use crate::geometry::{Geometry, Hit, QueryScratch};
 use crate::interaction::SurfaceInteraction;
@@ -48,6 +52,8 @@ pub struct CompiledScene {
     pub background: Background,
     /// For each material, its body's index of refraction at the D line; 1 where it is opaque.
     indices_d: Vec<f64>,
+    /// By the number of a transparent object, where the scene says so.
+    body_spans: BTreeMap<u32, Span>,
     /// Any light goes through any material.
     has_bodies: bool,
 }
@@ -110,7 +116,9 @@ impl CompiledScene {
         let mut materials: Vec<Material> =
             scene.materials.iter().map(|material| Material::new(material, &textures)).collect();
         materials.push(Material::unspecified());
-        let Some((geometry, object_names)) = objects::compile(scene, &materials, &textures, &mut diagnostics) else {
+        let Some(objects::Compiled { geometry, names: object_names, body_spans }) =
+            objects::compile(scene, &materials, &textures, &mut diagnostics)
+        else {
             return Err(CompileError { diagnostics });
         };
         Ok(Self {
@@ -123,6 +131,7 @@ impl CompiledScene {
             light_names: names(scene.lights.iter().map(|light| light.name.as_deref()), "light"),
             warnings: diagnostics,
             background,
+            body_spans,
             indices_d: materials.iter().map(|m| m.body.as_ref().map_or(1.0, |b| b.ior.index(SODIUM_D))).collect(),
             has_bodies: materials.iter().any(|m| m.body.is_some()),
             materials,

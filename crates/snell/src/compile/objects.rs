@@ -1,12 +1,12 @@
 //! Flattening the objects of a scene into primitives, and building what they are found by.
 
 use std::borrow::Cow;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 use snell_math::{Bounds3, Transform};
 use snell_scene::scene::{self, Object, ObjectKind, Scene};
-use snell_scene::{Diagnostic, Id};
+use snell_scene::{Diagnostic, Id, Span};
 
 use super::count::Plan;
 use super::names::ObjectNames;
@@ -18,6 +18,16 @@ use crate::shape::Shape;
 use crate::shape::triangle_mesh::TriangleMesh;
 use crate::texture::{Spaces, Textures};
 
+/// What the objects of a scene become.
+pub struct Compiled {
+    /// What rays can meet.
+    pub geometry: Geometry,
+    /// What objects are called.
+    pub names: ObjectNames,
+    /// Where the scene says so, by the numbers of transparent ones.
+    pub body_spans: BTreeMap<u32, Span>,
+}
+
 /// Compiles all objects of a scene, with their names. `materials` is the scene's list with the one for objects without
 /// material at its end. `None` where there is an error among the diagnostics.
 pub fn compile(
@@ -25,7 +35,7 @@ pub fn compile(
     materials: &[Material],
     textures: &Textures,
     diagnostics: &mut Vec<Diagnostic>,
-) -> Option<(Geometry, ObjectNames)> {
+) -> Option<Compiled> {
     let plan = Plan::new(scene).map_err(|error| diagnostics.push(*error)).ok()?;
     let descriptions: Vec<&scene::Mesh> = scene.meshes.iter().collect();
     let compiled: Vec<Result<TriangleMesh, _>> = descriptions.par_iter().map(|mesh| TriangleMesh::new(mesh)).collect();
@@ -52,6 +62,7 @@ pub fn compile(
         places: Vec::with_capacity(scene.prototypes.len()),
         solids: Vec::new(),
         names: ObjectNames::default(),
+        body_spans: BTreeMap::new(),
         next_object: 0,
         warned: BTreeSet::new(),
         failed: false,
@@ -72,13 +83,13 @@ pub fn compile(
         return None;
     }
     let world = compiler.space(&scene.objects, scene.prototypes.len(), plan.in_world)?;
-    let Compiler { prototypes, solids, names, .. } = compiler;
+    let Compiler { prototypes, solids, names, body_spans, .. } = compiler;
     let mesh_materials =
         scene.meshes.iter().map(|mesh| mesh.materials.iter().map(|id| id.index() as u32).collect()).collect();
     let default_material = materials.len() as u32 - 1;
     let geometry =
         Geometry { world, prototypes, meshes, mesh_materials, solids, transparent, spaces, default_material };
-    Some((geometry, names))
+    Some(Compiled { geometry, names, body_spans })
 }
 
 struct Compiler<'a> {
@@ -94,6 +105,7 @@ struct Compiler<'a> {
     places: Vec<u32>,
     solids: Vec<CsgSolid>,
     names: ObjectNames,
+    body_spans: BTreeMap<u32, Span>,
     next_object: u32,
     /// Objects of which a warning was told: one for all copies. By their places in memory, which do not change meanwhile.
     warned: BTreeSet<*const Object>,
@@ -205,6 +217,18 @@ impl Compiler<'_> {
             );
         }
         let mut bounds = compiled.bounds();
+        if !is_opaque
+            && open_edges == 0
+            && compiled.signed_volume() < 0.0
+            && self.warned.insert(std::ptr::from_ref(object))
+        {
+            let name = object.name.as_deref().unwrap_or(&description.name);
+            let message = format!("the transparent mesh \"{name}\" is inside out: its faces look inwards");
+            self.diagnostics.push(Diagnostic::warning(message).at_optional(object.span.clone(), "this mesh").help(
+                "a ray that goes into it is taken to leave it, and is in it where it has come out; list the corners of each face \
+                 counter-clockwise as they are seen from outside",
+            ));
+        }
         let placement = if space_from_object.is_identity() {
             NONE
         } else {
@@ -361,6 +385,9 @@ impl Compiler<'_> {
         self.next_object += 1;
         if number as usize == self.names.len() {
             self.names.push(object.name.as_deref(), kind);
+            if let Some(span) = object.span.clone().filter(|_| !is_opaque && material != NONE) {
+                self.body_spans.insert(number, span);
+            }
         }
         Attributes { object: number, material, object_space: NONE, is_opaque }
     }

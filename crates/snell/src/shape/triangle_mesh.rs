@@ -313,6 +313,18 @@ impl TriangleMesh {
         !self.tree.is_empty() && self.boundary_edges() == 0
     }
 
+    /// The volume of a closed mesh: negative for one that is inside out, whose faces are clockwise as seen from outside. For an open
+    /// mesh the number means nothing.
+    pub fn signed_volume(&self) -> f64 {
+        // From the middle, so that no digits are lost far from the origin.
+        let middle = self.bounds.center();
+        let of_triangle = |triangle: u32| {
+            let [a, b, c] = self.triangle(triangle).map(|corner| corner - middle);
+            a.dot(b.cross(c)) / 6.0
+        };
+        (0..self.triangles.len() as u32).map(of_triangle).sum()
+    }
+
     /// True where a point is inside a closed mesh: a ray from it crosses the mesh an odd number of times. Any direction
     /// will do, since crossings are counted right on edges and vertices too. For an open mesh the answer means nothing.
     pub fn contains(&self, p: Point3) -> bool {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use snell::compile::{CompileError, CompiledScene};
+use snell::compile::{CompileError, CompiledScene, overlapping_bodies};
 use snell::math::{Point3, Rgb, Transform, Vector3};
 use snell::scene::scene::{
     Background, CsgOperation, Dielectric, Grid, ImageAsset, Material, Medium, Mesh, Object, ObjectKind, Pattern,
@@ -151,6 +151,86 @@ fn glass_with_holes_is_a_warning() {
     // Opaque ones may be open.
     let text = b"[[object]]\nmesh = { vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], faces = [[0, 1, 2]] }\n";
     assert!(CompiledScene::build(&scene_of_text("sheet.toml", text)).expect("it renders").warnings.is_empty());
+}
+
+#[test]
+fn glass_that_is_inside_out_is_a_warning() {
+    let mut scene = glass_mesh(4);
+    let mut mesh = scene.meshes.iter().next().expect("one").clone();
+    mesh.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+    scene.objects[0].kind = ObjectKind::Shape(Shape::Mesh(scene.meshes.push(mesh)));
+    let compiled = CompiledScene::build(&scene).expect("it renders");
+    let told: Vec<&str> = compiled.warnings.iter().map(|warning| warning.message.as_str()).collect();
+    assert_eq!(told, ["the transparent mesh \"gem\" is inside out: its faces look inwards"]);
+    // A mirrored copy of a right one is right.
+    let mut mirrored = glass_mesh(4);
+    mirrored.objects[0].parent_from_object = Transform::scale(Vector3::new(-1.0, 1.0, 1.0));
+    assert!(CompiledScene::build(&mirrored).expect("it renders").warnings.is_empty());
+}
+
+/// What is told of two bodies, glass and water, with a priority of the water.
+fn overlaps(glass: &str, water: &str, priority: i32) -> Vec<String> {
+    let text = format!(
+        "[material.glass]\ndielectric = {{}}\n[material.water]\ndielectric = {{ ior = 1.33, priority = {priority} }}\n\
+         [[object]]\nname = 'glass'\n{glass}\nmaterial = 'glass'\n[[object]]\nname = 'water'\n{water}\nmaterial = 'water'\n"
+    );
+    let scene = CompiledScene::build(&scene_of_text("overlap.toml", text.as_bytes())).expect("it compiles");
+    let told = overlapping_bodies(&scene);
+    assert!(told.iter().all(|warning| warning.place.is_some() && warning.related.len() == 1 && warning.help.is_some()));
+    told.into_iter().map(|warning| warning.message).collect()
+}
+
+#[test]
+fn bodies_that_cross_without_priority_are_a_warning() {
+    let cube = |half: f64| {
+        format!(
+            "mesh = {{ vertices = [[-{half}, -{half}, -{half}], [{half}, -{half}, -{half}], [{half}, {half}, -{half}], [-{half}, {half}, -{half}], \
+             [-{half}, -{half}, {half}], [{half}, -{half}, {half}], [{half}, {half}, {half}], [-{half}, {half}, {half}]], \
+             faces = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [2, 3, 7, 6], [1, 2, 6, 5], [0, 4, 7, 3]] }}"
+        )
+    };
+    let bowl = "difference = [{ sphere = {} }, { sphere = { radius = 0.8 } }, { box = { min = [-2, 0.2, -2], max = [2, 2, 2] } }]";
+    let crossing = [
+        ("sphere = {}".to_owned(), "sphere = { center = [1.5, 0, 0] }".to_owned()),
+        ("sphere = {}".to_owned(), "box = { min = [0, -0.1, -0.1], max = [3, 0.1, 0.1] }".to_owned()),
+        (cube(1.0), "sphere = { radius = 1.2 }".to_owned()),
+        (cube(1.0), format!("{}\nrotate = [0, 45, 0]", cube(0.9))),
+        // Water that is a little too wide for its bowl.
+        (
+            bowl.to_owned(),
+            "difference = [{ sphere = { radius = 0.82 } }, { box = { min = [-2, 0, -2], max = [2, 2, 2] } }]"
+                .to_owned(),
+        ),
+        (
+            "torus = { major_radius = 1, minor_radius = 0.3 }".to_owned(),
+            "cylinder = { base = [1, -1, 0], top = [1, 1, 0], radius = 0.1 }".to_owned(),
+        ),
+        ("sphere = {}".to_owned(), "plane = { y = 0.5 }".to_owned()),
+    ];
+    for (glass, water) in &crossing {
+        let told = overlaps(glass, water, 0);
+        assert_eq!(
+            told,
+            ["the transparent bodies \"glass\" and \"water\" cross, and neither has priority"],
+            "{glass} {water}"
+        );
+        assert!(overlaps(glass, water, 1).is_empty(), "with a priority: {glass} {water}");
+    }
+    let apart = [
+        ("sphere = {}".to_owned(), "sphere = { center = [0.2, 0, 0], radius = 0.7 }".to_owned()),
+        ("sphere = {}".to_owned(), "sphere = { center = [2, 0, 0] }".to_owned()),
+        (cube(1.0), "sphere = { radius = 0.99 }".to_owned()),
+        (cube(1.0), "box = { min = [-1, 1, -1], max = [1, 2, 1] }".to_owned()),
+        (
+            bowl.to_owned(),
+            "difference = [{ sphere = { radius = 0.8 } }, { box = { min = [-2, 0, -2], max = [2, 2, 2] } }]".to_owned(),
+        ),
+        ("torus = { major_radius = 1, minor_radius = 0.3 }".to_owned(), "sphere = { radius = 0.6 }".to_owned()),
+        ("plane = { y = 3 }".to_owned(), "sphere = {}".to_owned()),
+    ];
+    for (glass, water) in &apart {
+        assert!(overlaps(glass, water, 0).is_empty(), "{glass} {water}");
+    }
 }
 
 #[test]
