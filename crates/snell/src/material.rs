@@ -347,7 +347,26 @@ impl Material {
 
     /// Which coordinates of a hit matter.
     pub fn spaces(&self, textures: &Textures) -> Spaces {
-        self.textured.iter().fold(Spaces::default(), |all, &(_, texture)| all.union(textures.spaces(texture)))
+        let of_film = self.film().and_then(|film| film.variation).map(|variation| variation.by);
+        let all = self.textured.iter().map(|&(_, texture)| texture).chain(of_film);
+        all.fold(Spaces::default(), |all, texture| all.union(textures.spaces(texture)))
+    }
+
+    /// The film on it.
+    pub fn film(&self) -> Option<&scene::Film> {
+        match (&self.body, &self.metal) {
+            (Some(body), _) => body.film.as_ref(),
+            (None, Some(metal)) => metal.film.as_ref(),
+            (None, None) => None,
+        }
+    }
+
+    /// How thick the film is at a hit, in nanometres; 0 without one.
+    pub fn film_thickness(&self, textures: &Textures, interaction: &SurfaceInteraction) -> f64 {
+        let Some(scene::Film { thickness_nm, variation, .. }) = self.film() else { return 0.0 };
+        let Some(scene::FilmVariation { to_nm, by }) = variation else { return *thickness_nm };
+        let share = f64::from(textures.evaluate(*by, &coordinates(interaction)).mean()).clamp(0.0, 1.0);
+        thickness_nm * (1.0 - share) + to_nm * share
     }
 
     /// True where it gives off light, somewhere at least.
@@ -431,14 +450,7 @@ impl Material {
     pub fn bsdf(&self, textures: &Textures, interaction: &SurfaceInteraction) -> Bsdf {
         let mut bsdf = self.base;
         if !self.textured.is_empty() {
-            let coordinates = TextureCoordinates {
-                object_point: interaction.object_point,
-                object_inside: interaction.object_inside,
-                world_point: interaction.point,
-                world_inside: interaction.inside(),
-                uv: interaction.uv,
-                footprint: Footprint::SHARP,
-            };
+            let coordinates = coordinates(interaction);
             let mut before = None;
             for &(slot, texture) in &self.textured {
                 // The ambient colour is most often the diffuse one.
@@ -462,6 +474,19 @@ impl Material {
             Some(color) => *slot_of(&mut self.base, slot) = color,
             None => self.textured.push((slot, texture)),
         }
+    }
+}
+
+/// Where textures are asked at a hit.
+#[inline]
+fn coordinates(interaction: &SurfaceInteraction) -> TextureCoordinates {
+    TextureCoordinates {
+        object_point: interaction.object_point,
+        object_inside: interaction.object_inside,
+        world_point: interaction.point,
+        world_inside: interaction.inside(),
+        uv: interaction.uv,
+        footprint: Footprint::SHARP,
     }
 }
 

@@ -91,10 +91,21 @@ impl Extinction {
 /// A thin film on a surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
-    /// Its thickness in nanometres.
+    /// Its thickness in nanometres; where it varies, that where the texture is black.
     pub thickness_nm: f64,
+    /// How it varies, where it does.
+    pub variation: Option<FilmVariation>,
     /// Its index of refraction.
     pub ior: Dispersion,
+}
+
+/// How the thickness of a film differs from place to place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FilmVariation {
+    /// The thickness in nanometres where the texture is white.
+    pub to_nm: f64,
+    /// The texture, of which the mean of the components counts, from 0 to 1.
+    pub by: Id<Texture>,
 }
 
 /// A metal's surface.

@@ -26,7 +26,7 @@ pub use drawing::{
 pub use expression::{Expression, ExpressionError};
 pub use lens::{CameraLens, LensPrescription, LensSurface, LensSystem, Paraxial, ParaxialImage, ThinLens};
 pub use light::{Falloff, Light, LightKind};
-pub use material::{Dielectric, Extinction, Film, Material, Medium, Metal, MetalIndex};
+pub use material::{Dielectric, Extinction, Film, FilmVariation, Material, Medium, Metal, MetalIndex};
 pub use mesh::Mesh;
 pub use object::{CsgOperation, Grid, Object, ObjectKind, Prototype, Shape};
 pub use plot::{Align, Axis, AxisPlace, CurveKind, Plot, PlotCurve, PlotFit, PlotLabel, Ticks};

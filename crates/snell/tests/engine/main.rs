@@ -10,6 +10,7 @@ mod catalogue;
 mod compile;
 mod determinism;
 mod explain;
+mod films;
 mod lens;
 mod lighting;
 mod optics;

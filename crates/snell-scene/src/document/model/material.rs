@@ -109,12 +109,27 @@ impl Default for Dielectric {
 #[serde(deny_unknown_fields)]
 #[schemars(extend("x-example" = "[material.soap]\ndielectric = { ior = 1, film = { thickness = 400, ior = 1.33 } }\n"))]
 pub struct Film {
-    /// Its thickness.
-    #[schemars(range(min = 0, max = 100000), extend("x-unit" = "nanometres"))]
-    pub thickness: f64,
+    /// Its thickness: the same everywhere, or between two by a texture.
+    #[schemars(extend("minimum" = 0, "maximum" = 100000, "x-unit" = "nanometres"))]
+    pub thickness: Either<f64, FilmThickness>,
     /// Its index of refraction, as that of a body.
     #[schemars(extend("minimum" = 0.1, "maximum" = 100))]
     pub ior: Located<Ior>,
+}
+
+/// A thickness that differs from place to place, as that of a soap bubble, which is thinner above, or of oil on water. Only `path` shows films.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("x-example" = "[material.soap.dielectric]\nior = 1\nfilm = { thickness = { from = 700, to = 150, by = { gradient = { axis = [0, 1, 0] } } }, ior = 1.33 }\n"))]
+pub struct FilmThickness {
+    /// Where the texture is black.
+    #[schemars(range(min = 0, max = 100000), extend("x-unit" = "nanometres"))]
+    pub from: f64,
+    /// Where it is white.
+    #[schemars(range(min = 0, max = 100000), extend("x-unit" = "nanometres"))]
+    pub to: f64,
+    /// The texture; of a colour counts the mean of its components.
+    pub by: Box<Located<Paint>>,
 }
 
 /// A metal: what it is by exactly one of `of`, `index` and `color`.

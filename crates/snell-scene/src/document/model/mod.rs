@@ -35,7 +35,7 @@ pub use lens::{
 };
 pub use light::{DirectionalLight, Falloff, FalloffLaw, Light, PointLight, PolynomialFalloff, SpotLight};
 pub use material::{
-    Absorption, AbsorptionChoice, AbsorptionWord, Cauchy, ComplexIndex, Dielectric, Film, Ior,
+    Absorption, AbsorptionChoice, AbsorptionWord, Cauchy, ComplexIndex, Dielectric, Film, FilmThickness, Ior,
     IorFormula, Material, MaterialChoice, Metal, Scattering, Sellmeier,
 };
 pub use mesh::Mesh;

@@ -10,7 +10,7 @@ use super::ior::Optics;
 use crate::catalogue;
 use crate::diagnostic::{Diagnostic, Span, did_you_mean};
 use crate::document::model::{self, Either, Located, MaterialChoice, Paint};
-use crate::scene::{Dielectric, Extinction, Film, Material, Medium, Metal, MetalIndex};
+use crate::scene::{Dielectric, Extinction, Film, FilmVariation, Material, Medium, Metal, MetalIndex};
 use crate::table::Id;
 
 /// The diffuse colour of objects without a material.
@@ -142,7 +142,13 @@ impl Resolver<'_> {
     }
 
     fn film(&mut self, film: &model::Film) -> Film {
-        Film { thickness_nm: film.thickness, ior: self.ior(&film.ior) }
+        let (thickness_nm, variation) = match &film.thickness {
+            Either::A(thickness) => (*thickness, None),
+            Either::B(model::FilmThickness { from, to, by }) => {
+                (*from, Some(FilmVariation { to_nm: *to, by: self.term(by) }))
+            }
+        };
+        Film { thickness_nm, variation, ior: self.ior(&film.ior) }
     }
 
     /// What was measured of the absorption of a glass, in the scene's units.

@@ -6,7 +6,7 @@ use snell_math::{Dispersion, Ray};
 use snell_scene::scene::Film;
 
 use super::lobes::{BoundaryColors, SurfaceColors};
-use super::reflector::Reflector;
+use super::reflector::{Reflector, film_at};
 use super::rough::{Rough, RoughKind};
 use super::spectra::{BodySpectra, Colors, Reflectance, Spectral, WHITE};
 use crate::compile::CompiledScene;
@@ -71,6 +71,8 @@ pub struct Meeting {
     pub around: Option<Inside>,
     /// The mesh has a colour of its own there.
     pub is_tinted: bool,
+    /// How thick the film there is, in nanometres.
+    pub film_nm: f64,
     /// The wavelengths.
     pub nm: Spectral,
     /// All wavelengths but the hero have been given up.
@@ -91,11 +93,7 @@ impl PathMaterials {
             constant: material.constant_bsdf().map(|bsdf| colors_of(bsdf).map(Reflectance::new)),
             body: material.body.as_ref().and_then(|body| BodySpectra::new(&body.medium, body.extinction.as_ref())),
             clear: clear(material),
-            film: match (&material.body, &material.metal) {
-                (Some(body), _) => body.film.clone(),
-                (None, Some(metal)) => metal.film.clone(),
-                (None, None) => None,
-            },
+            film: material.film().cloned(),
             metal: material.metal.as_ref().map(|metal| {
                 let rough = ggx(metal.roughness).map(|ggx| (ggx, ConductorCompensation::new(ggx)));
                 (metal.metal.clone(), rough)
@@ -160,8 +158,9 @@ impl PathMaterials {
 
     /// The colours of a surface whose lobes are known as colours, at wavelengths.
     pub fn colors(&self, colors: &Colors, number: u32, bsdf: &Bsdf, meeting: &Meeting) -> SurfaceColors<'_> {
-        let Meeting { sides, around, is_tinted, nm, hero_alone } = *meeting;
+        let Meeting { sides, around, is_tinted, film_nm, nm, hero_alone } = *meeting;
         let material = &self.materials[number as usize];
+        let film = material.film.as_ref().map(|film| film_at(film, film_nm, nm));
         let constant = material.constant.filter(|_| !is_tinted);
         let at = |slot: usize| match constant {
             Some(constant) => constant[slot].at(nm),
@@ -179,7 +178,7 @@ impl PathMaterials {
         };
         if let Some((metal, rough)) = &material.metal {
             let [before, _] = self.indices([around, None], nm);
-            let reflector = Reflector::metal(before, metal, material.film.as_ref(), nm);
+            let reflector = Reflector::metal(before, metal, film, nm);
             // Their colours are those of `whitted`, which shows metals by a mirror and a highlight.
             (surface.mirror, surface.specular, surface.diffuse) = ([0.0; 4], [0.0; 4], [0.0; 4]);
             match rough {
@@ -192,7 +191,7 @@ impl PathMaterials {
         }
         if let Some((interface, sides)) = bsdf.interface.zip(sides) {
             let [before, beyond] = self.indices(sides, nm);
-            let reflector = Reflector::dielectric(before, beyond, material.film.as_ref(), nm);
+            let reflector = Reflector::dielectric(before, beyond, film, nm);
             let [reflect, transmit] = [at(3), at(4)];
             match &material.rough {
                 Some(rough) if interface.fresnel && before != beyond => {

@@ -279,6 +279,7 @@ impl Path {
             sides: crossing.map(|Crossing { before, beyond, .. }| [before, beyond]),
             around: step.out.media.current(media),
             is_tinted: interaction.vertex_color.is_some(),
+            film_nm: material.film_thickness(&step.scene.textures, interaction),
             nm,
             hero_alone: step.path.wavelengths.is_hero_alone(),
         };

@@ -201,6 +201,7 @@ impl Pass<'_> {
                 sides: crossing.map(|crossing| [crossing.before, crossing.beyond]),
                 around: buffers.media.current(media),
                 is_tinted: interaction.vertex_color.is_some(),
+                film_nm: material.film_thickness(&self.scene.textures, &interaction),
                 nm,
                 hero_alone: photon.wavelengths.is_hero_alone(),
             };

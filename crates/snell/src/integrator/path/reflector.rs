@@ -6,13 +6,16 @@ use snell_scene::scene;
 use super::spectra::Spectral;
 use crate::optics::{ComplexIndex, Metal, ThinFilm, fresnel_conductor, fresnel_dielectric, thin_film};
 
+/// A film at the wavelengths of a path.
+pub type FilmAt = [ThinFilm; HERO_WAVELENGTHS];
+
 /// A boundary at the wavelengths of a path.
 #[derive(Clone, Copy, Debug)]
 pub struct Reflector {
     /// The indices of refraction on the side of `wo`.
     pub before: Spectral,
     beyond: Beyond,
-    film: Option<[ThinFilm; HERO_WAVELENGTHS]>,
+    film: Option<FilmAt>,
     nm: Spectral,
 }
 
@@ -24,14 +27,14 @@ enum Beyond {
 
 impl Reflector {
     /// The boundary between two transparent bodies.
-    pub fn dielectric(before: Spectral, beyond: Spectral, film: Option<&scene::Film>, nm: Spectral) -> Self {
-        Self { before, beyond: Beyond::Dielectric(beyond), film: film.map(|film| film_at(film, nm)), nm }
+    pub fn dielectric(before: Spectral, beyond: Spectral, film: Option<FilmAt>, nm: Spectral) -> Self {
+        Self { before, beyond: Beyond::Dielectric(beyond), film, nm }
     }
 
     /// The surface of a metal.
-    pub fn metal(before: Spectral, metal: &Metal, film: Option<&scene::Film>, nm: Spectral) -> Self {
+    pub fn metal(before: Spectral, metal: &Metal, film: Option<FilmAt>, nm: Spectral) -> Self {
         let index = nm.map(|nm| metal.index(nm));
-        Self { before, beyond: Beyond::Metal(index), film: film.map(|film| film_at(film, nm)), nm }
+        Self { before, beyond: Beyond::Metal(index), film, nm }
     }
 
     /// The indices of refraction on the other side; those of this one for a metal, which light does not enter.
@@ -78,6 +81,7 @@ impl Reflector {
     }
 }
 
-fn film_at(film: &scene::Film, nm: Spectral) -> [ThinFilm; HERO_WAVELENGTHS] {
-    nm.map(|nm| ThinFilm { index: film.ior.index(nm).into(), thickness_nm: film.thickness_nm })
+/// A film of a thickness in nanometres at wavelengths.
+pub fn film_at(film: &scene::Film, thickness_nm: f64, nm: Spectral) -> FilmAt {
+    nm.map(|nm| ThinFilm { index: film.ior.index(nm).into(), thickness_nm })
 }
