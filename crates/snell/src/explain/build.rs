@@ -187,6 +187,7 @@ impl Sample<'_, '_> {
         let index = inside.map_or(1.0, |inside| {
             let wavelength = wavelength_nm.or(self.watch.settings.wavelength_nm);
             match (&scene.materials[inside.material as usize].body, wavelength) {
+                (Some(body), Some(wavelength)) if self.watch.is_path() => body.path_ior().index(wavelength),
                 (Some(body), Some(wavelength)) => body.ior.index(wavelength),
                 _ => scene.index_d(Some(inside)),
             }

@@ -130,10 +130,11 @@ impl CameraRays for PathRays<'_> {
         let (mut xs, mut ys) = ([0.0; WIDTH], [0.0; WIDTH]);
         if !self.through_lens.is_empty() {
             for lane in 0..L::COUNT {
-                let ray = self.through_lens[(first + lane).min(self.through_lens.len() - 1)];
+                let number = (first + lane).min(self.through_lens.len() - 1);
+                let ray = self.through_lens[number];
                 set_column(&mut rows.origin, at + lane, ray.origin.to_array());
                 set_column(&mut rows.direction, at + lane, ray.direction.to_array());
-                split[at + lane] = 0;
+                split[at + lane] = number as u32;
             }
             return;
         }

