@@ -13,6 +13,8 @@ mod emission;
 mod environment;
 mod lights;
 mod lobes;
+#[cfg(test)]
+mod lobes_tests;
 mod materials;
 mod medium;
 mod photon_map;
