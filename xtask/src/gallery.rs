@@ -16,6 +16,8 @@ use crate::process;
 const RENDER_OPTIONS: &[&str] = &["--width", "960"];
 /// And one whose paths are traced, which takes its time.
 const PATH_OPTIONS: &[&str] = &["--width", "640", "--samples", "128"];
+/// And the lecture's glass by paths, beside its own picture.
+const BESIDE_OPTIONS: &[&str] = &["--width", "480", "--samples", "64"];
 
 /// Figures that `snell view` draws: both volumes side by side.
 const VIEWS: &[&str] = &["canonical-volume"];
@@ -58,19 +60,17 @@ pub fn run(arguments: Arguments) -> Outcome {
         let has = |wanted: &str| text.lines().any(|line| line.trim_end() == wanted);
         let is_of_paths = has("integrator = \"path\"");
         let is_rendered = is_of_paths || has("[[light]]");
-        entries.push(Entry { name, caption, is_rendered, is_of_paths });
+        let is_of_glass = text.contains("dielectric");
+        entries.push(Entry { name, caption, is_rendered, is_of_paths, is_of_glass });
     }
 
     fs::create_dir_all(&folder).map_err(|error| format!("cannot make {}: {error}", folder.display()))?;
     for entry in entries.iter().filter(|entry| wanted.is_empty() || wanted.contains(&entry.name)) {
         println!("{}", entry.name);
-        for (words, ending) in entry.commands() {
-            let picture = folder.join(format!("{}.{ending}", entry.name));
+        for made in entry.pictures() {
+            let picture = folder.join(&made.file);
             let mut command = process::program(&snell.to_string_lossy());
-            command.args(&words).arg("-o").arg(&picture);
-            if ending == "png" {
-                command.args(if entry.is_of_paths { PATH_OPTIONS } else { RENDER_OPTIONS });
-            }
+            command.args(&made.words).arg("-o").arg(&picture).args(made.options);
             process::run(&mut command)?;
             let size = fs::metadata(&picture).map_err(|error| format!("{}: {error}", picture.display()))?.len();
             if size > LARGEST_PICTURE {
@@ -115,10 +115,8 @@ fn remove_pictures_of_no_scene(folder: &Path, entries: &[Entry]) -> Outcome {
     let files = fs::read_dir(folder).map_err(|error| format!("cannot read {}: {error}", folder.display()))?;
     for path in files.filter_map(|entry| Some(entry.ok()?.path())) {
         let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-        let is_made = path.file_stem().is_some_and(|stem| {
-            let of_entry = entries.iter().find(|entry| stem == entry.name.as_str());
-            of_entry.is_some_and(|entry| entry.commands().iter().any(|(_, made)| *made == ending))
-        });
+        let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        let is_made = entries.iter().any(|entry| entry.pictures().iter().any(|made| made.file == name));
         if matches!(ending, "png" | "svg") && !is_made {
             fs::remove_file(&path).map_err(|error| format!("cannot remove {}: {error}", path.display()))?;
         }
@@ -135,18 +133,39 @@ struct Entry {
     is_rendered: bool,
     /// Its paths are traced.
     is_of_paths: bool,
+    /// It has glass, which paths show otherwise than the lecture's recursion.
+    is_of_glass: bool,
+}
+
+/// A picture of a scene.
+#[derive(Debug)]
+struct Made<'a> {
+    /// The words after `snell` that make it.
+    words: Vec<&'a str>,
+    /// Where it goes, below the gallery.
+    file: String,
+    /// What it is, after the scene's title.
+    what: &'static str,
+    /// With what else it is made for the page.
+    options: &'static [&'static str],
 }
 
 impl Entry {
-    /// The words after `snell` that make its pictures, with the ending of each.
-    fn commands(&self) -> Vec<(Vec<&str>, &'static str)> {
-        let drawn = if VIEWS.contains(&self.name.as_str()) {
-            vec!["view", &self.name, "--format", "svg"]
-        } else {
-            vec!["draw", &self.name]
-        };
-        let rendered = self.is_rendered.then(|| (vec!["render", self.name.as_str()], "png"));
-        rendered.into_iter().chain([(drawn, "svg")]).collect()
+    /// Its pictures, in the order in which they are shown.
+    fn pictures(&self) -> Vec<Made<'_>> {
+        let name = self.name.as_str();
+        let mut all = Vec::new();
+        if self.is_rendered {
+            let options = if self.is_of_paths { PATH_OPTIONS } else { RENDER_OPTIONS };
+            all.push(Made { words: vec!["render", name], file: format!("{name}.png"), what: "", options });
+        }
+        if self.is_rendered && self.is_of_glass && !self.is_of_paths {
+            let words = vec!["render", name, "--integrator", "path"];
+            all.push(Made { words, file: format!("{name}-path.png"), what: ", by paths", options: BESIDE_OPTIONS });
+        }
+        let words = if VIEWS.contains(&name) { vec!["view", name, "--format", "svg"] } else { vec!["draw", name] };
+        all.push(Made { words, file: format!("{name}.svg"), what: ", drawn", options: &[] });
+        all
     }
 }
 
@@ -186,13 +205,12 @@ fn page_text(entries: &[Entry]) -> String {
                     This page is written by `cargo xtask gallery`; change the scene, not the page.\n"
             .to_owned();
     for entry in entries {
-        let Entry { name, caption, .. } = entry;
+        let caption = &entry.caption;
         page += &format!("\n## {}\n", caption.title);
         let mut lines = String::new();
-        for (words, ending) in entry.commands() {
-            let what = if ending == "svg" { ", drawn" } else { "" };
-            page += &format!("\n![{}{what}]({name}.{ending})\n", caption.title);
-            lines += &format!("snell {} -o {name}.{ending}\n", words.join(" "));
+        for Made { words, file, what, .. } in entry.pictures() {
+            page += &format!("\n![{}{what}]({file})\n", caption.title);
+            lines += &format!("snell {} -o {file}\n", words.join(" "));
         }
         for paragraph in &caption.text {
             page += &format!("\n{paragraph}\n");
@@ -225,7 +243,7 @@ mod tests {
     fn the_page_shows_each_picture_with_its_command() {
         let entry = |name: &str, is_rendered| {
             let caption = Caption { title: "A".to_owned(), text: vec!["b".to_owned()] };
-            Entry { name: name.to_owned(), caption, is_rendered, is_of_paths: false }
+            Entry { name: name.to_owned(), caption, is_rendered, is_of_paths: false, is_of_glass: name == "one" }
         };
         let page = page_text(&[entry("one", true), entry("two", false), entry("canonical-volume", false)]);
         let parts = [
@@ -233,7 +251,8 @@ mod tests {
             "(one.png)",
             "(one.svg)",
             "\nb\n",
-            "snell render one -o one.png\nsnell draw one -o one.svg\n",
+            "(one-path.png)",
+            "snell render one -o one.png\nsnell render one --integrator path -o one-path.png\nsnell draw one -o one.svg\n",
             "(two.svg)",
             "snell view canonical-volume --format svg -o",
         ];
