@@ -20,7 +20,7 @@ pub use overlap::overlapping_bodies;
 
 use crate::geometry::{Geometry, Hit, QueryScratch};
 use crate::interaction::SurfaceInteraction;
-use crate::light::Light;
+use crate::light::{Light, LightOrigin};
 use crate::material::Material;
 use crate::task::{Inside, MediumStack, MediumStacks};
 use crate::texture::{Background, Textures};
@@ -57,6 +57,9 @@ pub struct CompiledScene {
     /// Any light goes through any material.
     has_bodies: bool,
 }
+
+/// A light that is seen under a smaller angle, in radians, is as good as a point.
+const POINT_LIKE: f64 = 1e-4;
 
 /// What keeps a scene from being compiled: errors, and the warnings that came with them.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -144,6 +147,15 @@ impl CompiledScene {
         let Geometry { world, prototypes, meshes, .. } = &self.geometry;
         let primitives = std::iter::once(world).chain(prototypes).map(|space| space.primitives.len() as u64).sum();
         SceneSize { triangles: meshes.iter().map(|mesh| mesh.triangle_count() as u64).sum(), primitives }
+    }
+
+    /// The names of lights that have no extent, or next to none: those that no ray meets by chance.
+    pub fn lights_without_extent(&self) -> Vec<&str> {
+        let has_extent =
+            |light: &Light| matches!(light.origin(), LightOrigin::Direction(_, angle) if angle > POINT_LIKE);
+        let all = self.lights.iter().zip(&self.light_names);
+        let without = all.filter(|(light, _)| !light.intensity().is_black() && !has_extent(light));
+        without.map(|(_, name)| name.as_str()).collect()
     }
 
     /// Everything about a hit that shading needs.

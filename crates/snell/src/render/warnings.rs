@@ -4,10 +4,6 @@ use snell_scene::Diagnostic;
 
 use super::PathSettings;
 use crate::compile::CompiledScene;
-use crate::light::LightOrigin;
-
-/// A light that is seen under a smaller angle, in radians, is as good as a point: no path meets it.
-const POINT_LIKE: f64 = 1e-4;
 
 /// Light that a picture will lack, by `whitted` or by paths.
 ///
@@ -36,14 +32,7 @@ pub fn warnings(scene: &CompiledScene, paths: Option<&PathSettings>) -> Vec<Diag
         }
         return list;
     };
-    let point_like: Vec<&str> = scene
-        .lights
-        .iter()
-        .zip(&scene.light_names)
-        .filter(|(light, _)| !light.intensity().is_black())
-        .filter(|(light, _)| !matches!(light.origin(), LightOrigin::Direction(_, angle) if angle > POINT_LIKE))
-        .map(|(_, name)| name.as_str())
-        .collect();
+    let point_like = scene.lights_without_extent();
     if point_like.is_empty() {
         return list;
     }
