@@ -162,8 +162,8 @@ fn every_built_in_scene_is_clean_and_crossing_glass_is_told() {
         .filter_map(|entry| Some(entry.unwrap().file_name().to_str()?.strip_suffix(".toml")?.to_owned()))
         .collect();
     assert!(names.len() > 20);
-    let said = folder.good(&format!("check {}", names.join(" "))).text();
-    assert_eq!(said, names.iter().map(|name| format!("{name}: no mistakes\n")).collect::<String>());
+    let run = folder.good(&format!("check {}", names.join(" ")));
+    assert_eq!(run.text(), names.iter().map(|name| format!("{name}: no mistakes\n")).collect::<String>());
     folder.write(
         "crossing.toml",
         "[material.a]\ndielectric = {}\n[material.b]\ndielectric = { ior = 1.33 }\n\

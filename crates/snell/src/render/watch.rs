@@ -33,7 +33,7 @@ pub struct Watch<'a> {
 /// What renders it.
 #[derive(Debug)]
 enum Engine {
-    Whitted(Whitted),
+    Whitted(Box<Whitted>),
     Path(Box<PathEngine>),
 }
 
@@ -54,7 +54,7 @@ impl<'a> Watch<'a> {
     /// [`ViewingError`], where the scene's camera is degenerate.
     pub fn new(scene: &'a CompiledScene, settings: &'a RenderSettings) -> Result<Self, ViewingError> {
         let camera = settings.camera(scene)?;
-        let engine = Engine::Whitted(settings.integrator(scene, &camera));
+        let engine = Engine::Whitted(Box::new(settings.integrator(scene, &camera)));
         Ok(Self { scene, settings, camera, engine, light_names: scene.light_names.clone() })
     }
 
@@ -152,7 +152,7 @@ impl<'a> Watch<'a> {
         let mut statistics = Statistics::default();
         match &self.engine {
             Engine::Whitted(integrator) => {
-                let job = self.job(integrator);
+                let job = self.job(&**integrator);
                 let ray = |&(pixel, number): &([u32; 2], u32)| {
                     job.camera_sample(pixel, self.sample_place(pixel, number), number)
                 };
@@ -181,7 +181,7 @@ impl<'a> Watch<'a> {
         match &self.engine {
             Engine::Whitted(integrator) => {
                 let rays = [(ray, split_place([0, 0], number))];
-                self.job(integrator).tracer().trace(rays.as_slice(), scratch, &mut statistics, observer, None)[0]
+                self.job(&**integrator).tracer().trace(rays.as_slice(), scratch, &mut statistics, observer, None)[0]
             }
             Engine::Path(paths) => {
                 let mut state = vec![paths.begin([0, 0], number)];

@@ -116,7 +116,7 @@ impl Resolver<'_> {
             self.error(&of.span, message, format!("its focal length is {focal_length:.4} mm"));
             return None;
         }
-        if !(pupil.abs() < 1e9) {
+        if pupil.is_nan() || pupil.abs() >= 1e9 {
             let message =
                 "the stop of the lens is in the focus of what is before it, and so nowhere as seen from the world";
             self.error(&of.span, message, "the camera's eye would be infinitely far away");

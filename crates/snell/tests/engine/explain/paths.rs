@@ -26,7 +26,7 @@ fn terms_add_up(name: &str, change: impl Fn(&mut Explanation)) -> Vec<Explanatio
     let mut watch = watch(&stage, &paths);
     let mut all = Vec::new();
     // One pixel of each three by three: photons set out anew for each.
-    for [x, y] in stage.pixels().into_iter().filter(|[x, y]| x % 3 == 1 && y % 3 == 1) {
+    for [x, y] in stage.pixels().filter(|[x, y]| x % 3 == 1 && y % 3 == 1) {
         let mut told = explain_watched(&mut watch, Subject::Pixel([x, y]), &mut Scratch::default());
         change(&mut told);
         assert_eq!(told.samples.len(), 3);
@@ -126,7 +126,7 @@ fn maps_of_paths_are_what_samples_say() {
         let property: Property = name.parse().expect("a name");
         let values = map(&mut watch, &property, &NoProgress).expect("a map");
         let mut some = 0;
-        for [x, y] in stage.pixels().into_iter().filter(|[x, y]| x % 4 == 1 && y % 3 == 2) {
+        for [x, y] in stage.pixels().filter(|[x, y]| x % 4 == 1 && y % 3 == 2) {
             let told = explain_watched(&mut watch, Subject::Pixel([x, y]), &mut Scratch::default());
             let luminance = |of: &dyn Fn(TermKind) -> bool| -> f32 {
                 told.terms.iter().filter(|term| of(term.kind)).map(|term| term.value.luminance()).sum()
