@@ -42,7 +42,7 @@ fn slab(glass: &str, unit: &str, thickness: f64) -> Stage {
     let text = format!(
         "unit = {unit}\n[camera]\neye = [0, 0, 50]\nlook_at = [0, 0, 0]\nfov = 4\n[background]\ncolor = 1\n\
          [material.a]\ndielectric = {{ ior = '{glass}', absorption = 'catalogue', fresnel = false, reflect = 0, transmit = 1 }}\n\
-         [[object]]\nbox = {{ min = [-90, -90, 0], max = [90, 90, {thickness}] }}\nmaterial = 'a'\n"
+         [[object]]\nbox = {{ min = [-90, -90, -{thickness}], max = [90, 90, 0] }}\nmaterial = 'a'\n"
     );
     Stage::new(&text).sized(16, 16)
 }
