@@ -11,12 +11,13 @@ use crate::compile::CompiledScene;
 /// use snell::compile::CompiledScene;
 /// use snell::math::Rgb;
 /// use snell::render::{PathSettings, warnings};
-/// use snell::scene::scene::{Material, Object, Scene, Shape};
+/// use snell::scene::scene::{Material, Object, Scene, Shape, Texture};
 ///
 /// let mut scene = Scene { ambient: Rgb::BLACK, ..Scene::default() };
 /// let shape = Shape::Sphere { center: snell::math::Point3::ORIGIN, radius: 1.0 };
-/// scene.materials.push(Material { emission: Rgb::WHITE.into(), ..Material::default() });
-/// scene.objects.push(Object { material: Some(0), ..Object::shape(shape) });
+/// let emission = Some(scene.textures.push(Texture::constant(Rgb::WHITE)));
+/// let material = Some(scene.materials.push(Material { emission, ..Material::default() }));
+/// scene.objects.push(Object { material, ..Object::shape(shape) });
 /// let compiled = CompiledScene::build(&scene).unwrap();
 /// assert!(warnings(&compiled, None)[0].message.contains("light nothing"));
 /// assert!(warnings(&compiled, Some(&PathSettings::default())).is_empty());
