@@ -19,7 +19,7 @@ pub type LensChoice = Either<String, Box<CameraLens>>;
 /// with a thin lens in its middle, whatever the `f_number`; what surfaces reflect, which coatings prevent, is left out.
 ///
 /// `whitted` and drawings have a pinhole in the same place, with the same field of view.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(
     extend("oneOf" = [{"required": ["radius"]}, {"required": ["of"]}]),

@@ -1,11 +1,10 @@
 //! Lenses of cameras: thin ones, and real ones with all that makes them impossible.
 
-use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
 use snell_math::{Dispersion, Point3, Vector3, portable};
 
-use super::Resolver;
+use super::{Resolver, needs_unit};
 use crate::diagnostic::{Diagnostic, Span, did_you_mean};
 use crate::document::model::{self, Either, Located};
 use crate::document::read_table;
@@ -36,15 +35,7 @@ impl Resolver<'_> {
         let lens = match &choice.value {
             Either::A(name) => {
                 let of = Located { value: Either::A(name.clone()), span: choice.span.clone() };
-                by_name = model::CameraLens {
-                    radius: None,
-                    of: Some(of),
-                    f_number: None,
-                    film: None,
-                    focus: None,
-                    focus_at: None,
-                    blades: 0,
-                };
+                by_name = model::CameraLens { of: Some(of), ..model::CameraLens::default() };
                 &by_name
             }
             Either::B(lens) => lens,
@@ -100,11 +91,7 @@ impl Resolver<'_> {
         self.refuse_angles(camera);
         let prescription = self.prescription(of);
         let Some(unit_mm) = self.unit_mm else {
-            let message = "a real lens is measured in millimetres, but how long a world unit is has not been said";
-            let diagnostic = Diagnostic::error(message).at_optional(span.clone(), "needs the scene's `unit`");
-            self.diagnostics.push(diagnostic.help(
-                "write `unit = \"cm\"` at the top of the scene, or \"mm\", \"m\", \"in\" or a number of millimetres",
-            ));
+            self.diagnostics.push(needs_unit("a real lens is measured in millimetres", span));
             return None;
         };
         let prescription = prescription?;
@@ -155,9 +142,9 @@ impl Resolver<'_> {
         // What is as wide as the film on the plane of focus, as it is seen from the pupil.
         let half = 0.5 * film_width / (image.magnification.abs() * focus_mm);
         let angle = 2.0 * portable::atan(half);
-        if !ANGLES.contains(&(angle * 180.0 / PI)) {
-            let message =
-                format!("film of {film_width} mm behind this lens sees an angle of {:.5}°", angle * 180.0 / PI);
+        let degrees = portable::degrees(angle);
+        if !ANGLES.contains(&degrees) {
+            let message = format!("film of {film_width} mm behind this lens sees an angle of {degrees:.5}°");
             let film = lens.film.as_ref().and_then(|film| film.span.clone());
             self.error(
                 &film.or_else(|| span.clone()),

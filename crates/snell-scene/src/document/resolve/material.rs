@@ -5,8 +5,8 @@ use std::f64::consts::LN_2;
 use snell_math::spectrum::{MeasuredSpectrum, d65, spectrum_to_rgb, spectrum_to_xyz};
 use snell_math::{Rgb, portable};
 
-use super::Resolver;
 use super::ior::Optics;
+use super::{Resolver, needs_unit};
 use crate::catalogue;
 use crate::diagnostic::{Diagnostic, Span, did_you_mean};
 use crate::document::model::{self, Either, Located, MaterialChoice, Paint};
@@ -167,11 +167,7 @@ impl Resolver<'_> {
                 "Schott's glasses, such as \"N-BK7\", have it; else write `absorption = { color = …, distance = … }`",
             ));
         } else if self.unit_mm.is_none() {
-            let message = "absorption of the catalogue is measured by the millimetre, but how long a world unit is has not been said";
-            let what = Diagnostic::error(message).at_optional(span.clone(), "needs the scene's `unit`");
-            diagnostic = Some(what.help(
-                "write `unit = \"cm\"` at the top of the scene, or \"mm\", \"m\", \"in\" or a number of millimetres",
-            ));
+            diagnostic = Some(needs_unit("absorption of the catalogue is measured by the millimetre", span));
         }
         self.diagnostics.list.extend(diagnostic);
         Some(Extinction { k: measured.ok()?, unit_mm: self.unit_mm? })

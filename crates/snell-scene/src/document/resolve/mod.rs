@@ -75,6 +75,14 @@ pub(in crate::document) fn resolve(
     resolver.scene
 }
 
+/// Of something measured, the scene's unit of length must be known.
+fn needs_unit(what: &str, span: &Option<Span>) -> Diagnostic {
+    let message = format!("{what}, but how long a world unit is has not been said");
+    let diagnostic = Diagnostic::error(message).at_optional(span.clone(), "needs the scene's `unit`");
+    diagnostic
+        .help("write `unit = \"cm\"` at the top of the scene, or \"mm\", \"m\", \"in\" or a number of millimetres")
+}
+
 fn millimetres(unit: &model::Unit) -> f64 {
     match unit {
         Either::A(model::UnitName::Mm) => 1.0,

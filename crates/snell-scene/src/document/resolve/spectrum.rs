@@ -4,7 +4,8 @@ use snell_math::Rgb;
 use snell_math::spectrum::{Daylight, MeasuredSpectrum, MeasuredSpectrumError, Spectrum, VISIBLE_NM};
 
 use super::Resolver;
-use crate::diagnostic::{Diagnostic, Span};
+use super::texture::placements;
+use crate::diagnostic::Diagnostic;
 use crate::document::model::{Either, Illuminant, LightColor, LightSpectrum, Located, MeasuredValues, Paint, Texture};
 use crate::scene;
 use crate::table::Id;
@@ -29,20 +30,9 @@ impl Resolver<'_> {
             Either::B(texture) if is_light(texture) => texture,
             _ => return (self.term(paint), None),
         };
-        let places: [(&str, Option<&Option<Span>>); 4] = [
-            ("space", given.space.as_ref().map(|space| &space.span)),
-            ("translate", given.translate.as_ref().map(|translate| &translate.span)),
-            ("rotate", given.rotate.as_ref().map(|rotate| &rotate.span)),
-            ("scale", given.scale.as_ref().map(|scale| &scale.span)),
-        ];
-        for (key, span) in places {
-            if let Some(span) = span {
-                self.error(
-                    span,
-                    format!("`{key}` has no effect on light that is the same everywhere"),
-                    "not possible here",
-                );
-            }
+        for (key, span) in placements(given) {
+            let message = format!("`{key}` has no effect on light that is the same everywhere");
+            self.error(span, message, "not possible here");
         }
         let luminance = given.luminance.as_ref().map_or(1.0, |luminance| luminance.value);
         let blackbody = given.blackbody.as_ref().map(|blackbody| blackbody.value);

@@ -118,20 +118,23 @@ impl Resolver<'_> {
 
     /// A texture named by another lies where its own definition says.
     fn refuse_placement(&mut self, texture: &model::Texture) {
-        let spans: [(&str, Option<&Option<Span>>); 4] = [
-            ("space", texture.space.as_ref().map(|space| &space.span)),
-            ("translate", texture.translate.as_ref().map(|translate| &translate.span)),
-            ("rotate", texture.rotate.as_ref().map(|rotate| &rotate.span)),
-            ("scale", texture.scale.as_ref().map(|scale| &scale.span)),
-        ];
-        for (key, span) in spans {
-            if let Some(span) = span {
-                let message = format!("`{key}` has no effect beside the name of a texture");
-                let diagnostic = Diagnostic::error(message).at_optional(span.clone(), "not possible here");
-                self.diagnostics.push(diagnostic.help("place the texture where it is defined"));
-            }
+        for (key, span) in placements(texture) {
+            let message = format!("`{key}` has no effect beside the name of a texture");
+            let diagnostic = Diagnostic::error(message).at_optional(span.clone(), "not possible here");
+            self.diagnostics.push(diagnostic.help("place the texture where it is defined"));
         }
     }
+}
+
+/// What says how a texture lies, by its keys.
+pub(super) fn placements(texture: &model::Texture) -> impl Iterator<Item = (&'static str, &Option<Span>)> {
+    let spans = [
+        ("space", texture.space.as_ref().map(|space| &space.span)),
+        ("translate", texture.translate.as_ref().map(|translate| &translate.span)),
+        ("rotate", texture.rotate.as_ref().map(|rotate| &rotate.span)),
+        ("scale", texture.scale.as_ref().map(|scale| &scale.span)),
+    ];
+    spans.into_iter().filter_map(|(key, span)| Some((key, span?)))
 }
 
 /// The paints of which a texture is made.
