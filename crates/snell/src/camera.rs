@@ -150,23 +150,17 @@ impl Camera {
     }
 
     /// A ray through a raster position and a place on a thin lens, by two numbers in [0, 1): all of one position meet where the lens
-    /// is sharp. (Cook, Porter and Carpenter, "Distributed Ray Tracing", SIGGRAPH 1984.) The ray of [`Camera::generate_ray`]
-    /// without a thin lens; for the rays of a real one see [`Camera::real_lens`].
+    /// is sharp. (Cook, Porter and Carpenter, "Distributed Ray Tracing", SIGGRAPH 1984.) `None` without a thin lens; for the rays of a
+    /// real one see [`Camera::real_lens`].
     #[inline]
-    pub fn generate_lens_ray(&self, x: f64, y: f64, u: [f64; 2]) -> Ray {
+    pub fn generate_lens_ray(&self, x: f64, y: f64, u: [f64; 2]) -> Option<Ray> {
+        let Some(scene::CameraLens::Thin(scene::ThinLens { radius, focus, blades })) = self.lens else { return None };
         let ray = self.generate_ray(x, y);
-        let Some(scene::CameraLens::Thin(scene::ThinLens { radius, focus, blades })) = self.lens else { return ray };
         let [a, b] = Aperture::new(blades, 0.0).sample(u);
         let across = self.right * (a * radius) + self.up * (b * radius);
         let sharp = self.eye + ray.direction * (focus / -ray.direction.dot(self.back));
         let origin = ray.origin + across;
-        Ray::new(origin, (sharp - origin).normalize())
-    }
-
-    /// True where it has a thin lens.
-    #[inline]
-    pub fn has_thin_lens(&self) -> bool {
-        matches!(self.lens, Some(scene::CameraLens::Thin(_)))
+        Some(Ray::new(origin, (sharp - origin).normalize()))
     }
 
     /// Its real lens, ready to be traced, which takes a tenth of a second; `None` where it has none.

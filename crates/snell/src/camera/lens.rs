@@ -198,41 +198,42 @@ impl RealLens {
     /// From a place of the film through a place of the plane through the last vertex to the world; `None` where a rim or the stop is in
     /// the way, or light is reflected totally.
     #[inline]
-    fn trace(&self, film: [f64; 2], place: [f64; 2], wavelength_nm: f64, shape: Shape) -> Option<([f64; 3], [f64; 3])> {
-        let mut origin = [film[0], film[1], -self.film_distance];
-        let mut direction = unit([place[0] - film[0], place[1] - film[1], self.film_distance]);
+    fn trace(&self, film: [f64; 2], place: [f64; 2], wavelength_nm: f64, shape: Shape) -> Option<(Vector3, Vector3)> {
+        let mut origin = Vector3::new(film[0], film[1], -self.film_distance);
+        let to_place = Vector3::new(place[0] - film[0], place[1] - film[1], self.film_distance);
+        let length = to_place.length();
+        let mut direction = Vector3::from(to_place.to_array().map(|x| x / length));
         let mut before = 1.0;
         for surface in &self.surfaces {
             let Surface { z, curvature, clear_radius_squared, is_stop, front } = surface;
             // From the vertex, and without a difference of like numbers: c t² + 2 b t + k = 0, whose root at the vertex is
             // finite for a flat surface too.
-            let from_vertex = [origin[0], origin[1], origin[2] - z];
-            let b = curvature * dot(from_vertex, direction) + direction[2];
-            let k = curvature * dot(from_vertex, from_vertex) + 2.0 * from_vertex[2];
+            let from_vertex = origin - Vector3::Z * *z;
+            let b = curvature * from_vertex.dot(direction) + direction.z();
+            let k = curvature * from_vertex.dot(from_vertex) + 2.0 * from_vertex.z();
             let discriminant = b * b - curvature * k;
             if discriminant < 0.0 {
                 return None;
             }
             let t = -k / (b + discriminant.sqrt());
-            let met: [f64; 3] = std::array::from_fn(|i| from_vertex[i] + t * direction[i]);
-            if met[0] * met[0] + met[1] * met[1] > *clear_radius_squared
-                || *is_stop && !self.stop.passes([met[0], met[1]], shape)
-            {
+            let met = from_vertex + direction * t;
+            let [x, y, _] = met.to_array();
+            if x * x + y * y > *clear_radius_squared || *is_stop && !self.stop.passes([x, y], shape) {
                 return None;
             }
-            let normal = [curvature * met[0], curvature * met[1], curvature * met[2] + 1.0];
+            let normal = met * *curvature + Vector3::Z;
             let beyond = front.index(wavelength_nm);
             if beyond != before {
                 let eta = before / beyond;
-                let cosine = dot(direction, normal);
+                let cosine = direction.dot(normal);
                 let refracted_squared = 1.0 - eta * eta * (1.0 - cosine * cosine);
                 if cosine <= 0.0 || refracted_squared < 0.0 {
                     return None;
                 }
                 let turn = refracted_squared.sqrt() - eta * cosine;
-                direction = std::array::from_fn(|i| eta * direction[i] + turn * normal[i]);
+                direction = direction * eta + normal * turn;
             }
-            origin = [met[0], met[1], met[2] + z];
+            origin = met + Vector3::Z * *z;
             before = beyond;
         }
         Some((origin, direction))
@@ -291,9 +292,9 @@ impl RealLens {
     }
 
     /// A ray of the lens's coordinates in the world.
-    fn in_world(&self, origin: [f64; 3], direction: [f64; 3]) -> Ray {
+    fn in_world(&self, origin: Vector3, direction: Vector3) -> Ray {
         let LensFrame { origin: vertex, axes: [right, up, back], millimetre, .. } = self.frame;
-        let vector = |[x, y, z]: [f64; 3]| right * x + up * y - back * z;
+        let vector = |v: Vector3| right * v.x() + up * v.y() - back * v.z();
         Ray::new(vertex + vector(origin) * millimetre, vector(direction).normalize())
     }
 }
@@ -348,17 +349,6 @@ fn sine_squared(height: f64, distance: f64) -> f64 {
 
 fn length([x, y]: [f64; 2]) -> f64 {
     (x * x + y * y).sqrt()
-}
-
-#[inline]
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline]
-fn unit(v: [f64; 3]) -> [f64; 3] {
-    let length = dot(v, v).sqrt();
-    v.map(|x| x / length)
 }
 
 #[cfg(test)]

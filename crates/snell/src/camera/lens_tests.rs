@@ -84,9 +84,9 @@ fn spherical_and_chromatic_aberration_are_those_of_an_independent_trace() {
             let check = |lens: &RealLens| {
                 let (origin, direction) =
                     lens.trace([0.0, 0.0], [-slope * focus, 0.0], nm, Shape::Round).expect("it passes");
-                assert_close(origin[0], height, 1e-9);
-                assert_close(direction[0], 0.0, 1e-11);
-                assert_close(direction[2], 1.0, 1e-11);
+                assert_close(origin.x(), height, 1e-9);
+                assert_close(direction.x(), 0.0, 1e-11);
+                assert_close(direction.z(), 1.0, 1e-11);
             };
             check(&traced);
             traced.film_distance += 0.01;
