@@ -21,7 +21,7 @@ pub fn bytes(
 ) -> Result<Vec<u8>, Failure> {
     let settings =
         FigureSettings { view: arguments.view.clone().unwrap_or_default(), title, ..FigureSettings::default() };
-    let page = figure(picture.scene, picture.settings, told, &settings).map_err(|error| failure(&error))?;
+    let page = figure(picture.watch.scene, picture.watch.settings, told, &settings).map_err(|error| failure(&error))?;
     encoded(&page, format)
 }
 

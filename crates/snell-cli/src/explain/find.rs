@@ -37,7 +37,7 @@ pub fn list() -> Result<(), Failure> {
 }
 
 /// Looks for what the command line asks for; lists the pixels, or, where a file or a format is wanted, explains the clearest one.
-pub fn run(arguments: &ExplainArguments, format: ExplainFormat, picture: &Picture<'_>) -> Result<(), Failure> {
+pub fn run(arguments: &ExplainArguments, format: ExplainFormat, picture: &mut Picture<'_>) -> Result<(), Failure> {
     let name = arguments.find.as_deref().unwrap_or_default();
     let phenomenon: Phenomenon = name.parse().map_err(|error: snell::explain::UnknownPhenomenon| {
         let names = PHENOMENA.iter().map(|(name, _)| *name);
@@ -51,7 +51,7 @@ pub fn run(arguments: &ExplainArguments, format: ExplainFormat, picture: &Pictur
         check_object(picture, object)?;
     }
     let count = arguments.count.unwrap_or(COUNT) as usize;
-    let found = find(&mut picture.watch()?, &phenomenon, count);
+    let found = find(&mut picture.watch, &phenomenon, count);
     let Some(best) = found.first() else {
         return Err(Failure::input(Diagnostic::error(format!(
             "no pixel of {} shows {}",
@@ -60,7 +60,7 @@ pub fn run(arguments: &ExplainArguments, format: ExplainFormat, picture: &Pictur
         ))));
     };
     if arguments.output.is_some() || arguments.format.is_some() {
-        let told = explained(picture, Subject::Sample(best.pixel, 0))?;
+        let told = explained(picture, Subject::Sample(best.pixel, 0));
         return put(arguments, format, picture, &told, arguments.output.as_deref());
     }
     let mut text = String::new();
@@ -72,7 +72,7 @@ pub fn run(arguments: &ExplainArguments, format: ExplainFormat, picture: &Pictur
 }
 
 fn check_object(picture: &Picture<'_>, object: &str) -> Result<(), Failure> {
-    let names = &picture.scene.object_names;
+    let names = &picture.watch.scene.object_names;
     let all: Vec<String> = (0..names.len() as u32).filter_map(|number| Some(names.get(number)?.into_owned())).collect();
     if all.iter().any(|name| name == object) {
         return Ok(());
@@ -87,22 +87,21 @@ fn check_object(picture: &Picture<'_>, object: &str) -> Result<(), Failure> {
 }
 
 /// The lecture's seven rays of a scene, each in a file of its own, or, as text, one after the other.
-pub fn seven_rays(arguments: &ExplainArguments, picture: &Picture<'_>, stem: &str) -> Result<(), Failure> {
+pub fn seven_rays(arguments: &ExplainArguments, picture: &mut Picture<'_>, stem: &str) -> Result<(), Failure> {
     let format = match (arguments.format, &arguments.output) {
         (Some(format), _) => format,
         (None, None) => ExplainFormat::Svg,
         (None, Some(_)) => super::format(arguments)?,
     };
     let mut missing = 0;
-    let mut watch = picture.watch()?;
     for (number, (phenomenon, title)) in (1..).zip(SEVEN_RAYS.iter().zip(SEVEN_TITLES)) {
-        let found = find(&mut watch, phenomenon, 1);
+        let found = find(&mut picture.watch, phenomenon, 1);
         let Some(best) = found.first() else {
             say(format_args!("{title}: no pixel of {} shows it", quoted(picture.name)));
             missing += 1;
             continue;
         };
-        let told = explained(picture, Subject::Sample(best.pixel, 0))?;
+        let told = explained(picture, Subject::Sample(best.pixel, 0));
         let [x, y] = best.pixel;
         if format == ExplainFormat::Text && arguments.output.is_none() {
             write_stdout(format!("{}{title}\n\n", if number > 1 { "\n" } else { "" }).as_bytes())?;

@@ -28,7 +28,7 @@ pub fn json(picture: &Picture<'_>, told: &Explanation) -> Value {
     json!({
         "version": VERSION,
         "scene": picture.name,
-        "size": [picture.settings.width, picture.settings.height],
+        "size": [picture.watch.settings.width, picture.watch.settings.height],
         "subject": subject(told.subject),
         "pixel": color(told.pixel),
         "samples": told.samples.iter().map(sample).collect::<Vec<_>>(),

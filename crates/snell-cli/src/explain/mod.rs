@@ -7,10 +7,9 @@ mod text;
 
 use std::path::Path;
 
-use snell::compile::CompiledScene;
 use snell::explain::{Explanation, Subject, explain_watched};
 use snell::math::{Point3, Ray, Vector3};
-use snell::render::{PathSettings, RenderSettings, Watch};
+use snell::render::{RenderSettings, Watch};
 use snell::scene::Diagnostic;
 use snell::trace::Scratch;
 
@@ -24,19 +23,11 @@ use crate::output::{check_writable, spare_sources, write_file};
 use crate::paths;
 use crate::render::{compile, picture_settings, read};
 
-/// A scene and how its picture is rendered.
+/// A scene's picture, watched.
 struct Picture<'a> {
     /// As messages call the scene.
     name: &'a str,
-    scene: &'a CompiledScene,
-    settings: &'a RenderSettings,
-    paths: Option<PathSettings>,
-}
-
-impl<'a> Picture<'a> {
-    fn watch(&self) -> Result<Watch<'a>, Failure> {
-        paths::watch(self.scene, self.settings, self.paths.as_ref())
-    }
+    watch: Watch<'a>,
 }
 
 /// Explains as the command line says, and returns the exit code.
@@ -65,18 +56,22 @@ pub fn run(arguments: &ExplainArguments) -> Result<u8, Failure> {
     diagnostics::print(&told);
     let settings = picture_settings(&arguments.picture, &scene);
     let paths = paths::settings(&arguments.paths, &arguments.picture, &scene, &[])?;
-    let picture = Picture { name: place.name(), scene: &compiled, settings: &settings, paths };
-    match subject(arguments, &settings)? {
-        Some(subject) => put(arguments, format, &picture, &explained(&picture, subject)?, arguments.output.as_deref())?,
-        None if arguments.find.is_some() => find::run(arguments, format, &picture)?,
-        None => find::seven_rays(arguments, &picture, &place.stem())?,
+    let subject = subject(arguments, &settings)?;
+    let mut picture = Picture { name: place.name(), watch: paths::watch(&compiled, &settings, paths.as_ref())? };
+    match subject {
+        Some(subject) => {
+            let told = explained(&mut picture, subject);
+            put(arguments, format, &picture, &told, arguments.output.as_deref())?;
+        }
+        None if arguments.find.is_some() => find::run(arguments, format, &mut picture)?,
+        None => find::seven_rays(arguments, &mut picture, &place.stem())?,
     }
     Ok(FINE)
 }
 
 /// The explanation of something in a picture.
-fn explained(picture: &Picture<'_>, subject: Subject) -> Result<Explanation, Failure> {
-    Ok(explain_watched(&mut picture.watch()?, subject, &mut Scratch::default()))
+fn explained(picture: &mut Picture<'_>, subject: Subject) -> Explanation {
+    explain_watched(&mut picture.watch, subject, &mut Scratch::default())
 }
 
 fn failure(error: &dyn std::fmt::Display) -> Failure {

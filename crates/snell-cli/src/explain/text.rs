@@ -40,7 +40,7 @@ pub fn text(picture: &Picture<'_>, told: &Explanation, details: bool) -> String 
 }
 
 fn heading(picture: &Picture<'_>, told: &Explanation) -> String {
-    let (width, height) = (picture.settings.width, picture.settings.height);
+    let (width, height) = (picture.watch.settings.width, picture.watch.settings.height);
     let [r, g, b] = told.pixel.to_array();
     let what = match told.subject {
         Subject::Pixel([x, y]) => format!("Pixel {x},{y} of {} ({width}x{height})", picture.name),

@@ -190,7 +190,7 @@ pub fn map(watch: &mut Watch<'_>, property: &Property, progress: &dyn Progress) 
 /// Adds some samples of every pixel to its sums.
 fn trace_pass(
     watch: &Watch<'_>,
-    wanted: &Wanted,
+    wanted: &Wanted<'_>,
     numbers: Range<u32>,
     sums: &mut [PixelTally],
     progress: &dyn Progress,
@@ -220,79 +220,39 @@ fn trace_pass(
     });
 }
 
-/// A property, with numbers instead of names.
+/// A property of a scene.
 #[derive(Debug)]
-enum Wanted {
-    Depth,
-    Rays,
-    TotalInternalReflection,
-    Caustic,
-    Reflected,
-    Refracted,
-    Background,
-    Ambient,
-    Diffuse,
-    Specular,
-    Scattering,
-    Emission,
-    Photons,
-    Scattered,
-    /// Objects that have the name.
-    Objects(Vec<u32>),
-    /// Lights that have the name.
-    Lights(Vec<u32>),
+struct Wanted<'p> {
+    property: &'p Property,
+    /// The numbers of the objects or lights that have the name, where it has one.
+    numbers: Vec<u32>,
 }
 
-impl Wanted {
-    fn new(watch: &Watch<'_>, property: &Property) -> Result<Self, MapError> {
-        let scene = watch.scene;
-        let Property::Share(of) = property else {
-            return Ok(match property {
-                Property::Depth => Self::Depth,
-                Property::Rays => Self::Rays,
-                Property::TotalInternalReflection => Self::TotalInternalReflection,
-                Property::Caustic | Property::Share(_) => Self::Caustic,
-            });
+impl<'p> Wanted<'p> {
+    fn new(watch: &Watch<'_>, property: &'p Property) -> Result<Self, MapError> {
+        let names = &watch.scene.object_names;
+        let (numbers, error): (Vec<u32>, MapError) = match property {
+            Property::Share(ShareOf::Object(name)) => {
+                let is_named = |number: &u32| names.get(*number).as_deref() == Some(name);
+                ((0..names.len() as u32).filter(is_named).collect(), MapError::NoObject(name.clone()))
+            }
+            Property::Share(ShareOf::Light(name)) => {
+                let named = (0..).zip(watch.light_names()).filter(|(_, other)| *other == name);
+                (named.map(|(number, _)| number).collect(), MapError::NoLight(name.clone()))
+            }
+            _ => return Ok(Self { property, numbers: Vec::new() }),
         };
-        Ok(match of {
-            ShareOf::Reflected => Self::Reflected,
-            ShareOf::Refracted => Self::Refracted,
-            ShareOf::Background => Self::Background,
-            ShareOf::Ambient => Self::Ambient,
-            ShareOf::Diffuse => Self::Diffuse,
-            ShareOf::Specular => Self::Specular,
-            ShareOf::Scattering => Self::Scattering,
-            ShareOf::Emission => Self::Emission,
-            ShareOf::Photons => Self::Photons,
-            ShareOf::Scattered => Self::Scattered,
-            ShareOf::Object(name) => {
-                let numbers = (0..scene.object_names.len() as u32)
-                    .filter(|&number| scene.object_names.get(number).as_deref() == Some(name));
-                let numbers: Vec<u32> = numbers.collect();
-                if numbers.is_empty() {
-                    return Err(MapError::NoObject(name.clone()));
-                }
-                Self::Objects(numbers)
-            }
-            ShareOf::Light(name) => {
-                let numbers = (0..).zip(watch.light_names()).filter(|(_, other)| *other == name);
-                let numbers: Vec<u32> = numbers.map(|(number, _)| number).collect();
-                if numbers.is_empty() {
-                    return Err(MapError::NoLight(name.clone()));
-                }
-                Self::Lights(numbers)
-            }
-        })
+        if numbers.is_empty() { Err(error) } else { Ok(Self { property, numbers }) }
     }
 
     /// The value of a pixel by its samples.
     fn value(&self, sum: &PixelTally) -> f32 {
         let mean = |sum_of: u64, samples: u32| sum_of as f32 / samples.max(1) as f32;
-        match self {
-            Self::Depth => sum.depth as f32,
-            Self::Rays => mean(sum.rays, sum.samples),
-            Self::TotalInternalReflection => mean(sum.totals, sum.samples),
-            _ => {
+        match self.property {
+            Property::Depth => sum.depth as f32,
+            Property::Rays => mean(sum.rays, sum.samples),
+            Property::TotalInternalReflection => mean(sum.totals, sum.samples),
+            Property::Caustic | Property::Share(_) => {
                 let [part, all] = sum.light;
                 if all > 0.0 { (part / all).clamp(0.0, 1.0) } else { 0.0 }
             }
@@ -301,29 +261,34 @@ impl Wanted {
 
     /// Whether a term is of the kind that is asked for.
     fn includes(&self, ray: RayTally, term: Term, is_filtered: impl FnOnce() -> bool) -> bool {
-        match self {
-            Self::Caustic => match term {
-                Term::Diffuse(_) | Term::Specular(_) => is_filtered(),
-                Term::Photons => true,
-                Term::Emission | Term::Background => ray.after_turn,
-                Term::Ambient | Term::Scattering(_) => false,
-            },
-            Self::Reflected => ray.reflected,
-            Self::Refracted => ray.refracted,
-            Self::Background => term == Term::Background,
-            Self::Ambient => term == Term::Ambient,
-            Self::Diffuse => matches!(term, Term::Diffuse(_)),
-            Self::Specular => matches!(term, Term::Specular(_)),
-            Self::Scattering => matches!(term, Term::Scattering(_)),
-            Self::Emission => term == Term::Emission,
-            Self::Photons => term == Term::Photons,
-            Self::Scattered => ray.scattered,
-            Self::Objects(numbers) => ray.object.is_some_and(|object| numbers.contains(&object)),
-            Self::Lights(numbers) => match term {
-                Term::Diffuse(light) | Term::Specular(light) | Term::Scattering(light) => numbers.contains(&light),
+        let of = match self.property {
+            Property::Depth | Property::Rays | Property::TotalInternalReflection => return false,
+            Property::Caustic => {
+                return match term {
+                    Term::Diffuse(_) | Term::Specular(_) => is_filtered(),
+                    Term::Photons => true,
+                    Term::Emission | Term::Background => ray.after_turn,
+                    Term::Ambient | Term::Scattering(_) => false,
+                };
+            }
+            Property::Share(of) => of,
+        };
+        match of {
+            ShareOf::Reflected => ray.reflected,
+            ShareOf::Refracted => ray.refracted,
+            ShareOf::Background => term == Term::Background,
+            ShareOf::Ambient => term == Term::Ambient,
+            ShareOf::Diffuse => matches!(term, Term::Diffuse(_)),
+            ShareOf::Specular => matches!(term, Term::Specular(_)),
+            ShareOf::Scattering => matches!(term, Term::Scattering(_)),
+            ShareOf::Emission => term == Term::Emission,
+            ShareOf::Photons => term == Term::Photons,
+            ShareOf::Scattered => ray.scattered,
+            ShareOf::Object(_) => ray.object.is_some_and(|object| self.numbers.contains(&object)),
+            ShareOf::Light(_) => match term {
+                Term::Diffuse(light) | Term::Specular(light) | Term::Scattering(light) => self.numbers.contains(&light),
                 Term::Background | Term::Emission | Term::Ambient | Term::Photons => false,
             },
-            Self::Depth | Self::Rays | Self::TotalInternalReflection => false,
         }
     }
 }
@@ -377,7 +342,7 @@ impl PixelTally {
 /// Counts what a map needs, for samples that are traced together.
 #[derive(Debug)]
 struct Tally<'w> {
-    wanted: &'w Wanted,
+    wanted: &'w Wanted<'w>,
     /// By the numbers of rays.
     rays: Vec<RayTally>,
     samples: Vec<SampleTally>,
@@ -388,7 +353,7 @@ struct Tally<'w> {
 }
 
 impl<'w> Tally<'w> {
-    fn new(wanted: &'w Wanted) -> Self {
+    fn new(wanted: &'w Wanted<'w>) -> Self {
         Self { wanted, rays: Vec::new(), samples: Vec::new(), filtered: Vec::new(), is_answered: false }
     }
 

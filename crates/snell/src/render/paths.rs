@@ -116,7 +116,7 @@ pub(super) struct PathRays<'a> {
     pixels: &'a [Pixel],
     /// Where in its pixel each is, and where on the lens.
     places: Vec<[f64; 4]>,
-    /// The rays themselves, where a real lens has been traced for them; else none.
+    /// The rays themselves, where they come through a lens; else none.
     through_lens: Vec<Ray>,
 }
 
@@ -128,16 +128,6 @@ impl CameraRays for PathRays<'_> {
     #[inline(always)]
     fn generate<L: Lanes>(&self, first: usize, rows: &mut RayRows, split: &mut [u32; WIDTH], at: usize) {
         let (mut xs, mut ys) = ([0.0; WIDTH], [0.0; WIDTH]);
-        if !self.through_lens.is_empty() {
-            for lane in 0..L::COUNT {
-                let number = (first + lane).min(self.through_lens.len() - 1);
-                let ray = self.through_lens[number];
-                set_column(&mut rows.origin, at + lane, ray.origin.to_array());
-                set_column(&mut rows.direction, at + lane, ray.direction.to_array());
-                split[at + lane] = number as u32;
-            }
-            return;
-        }
         for lane in 0..L::COUNT {
             // Beyond the last one it is the last one again.
             let number = (first + lane).min(self.pixels.len() - 1);
@@ -146,10 +136,9 @@ impl CameraRays for PathRays<'_> {
             // The number of its path.
             split[at + lane] = number as u32;
         }
-        if self.camera.has_thin_lens() {
+        if !self.through_lens.is_empty() {
             for lane in 0..L::COUNT {
-                let [.., u, v] = self.places[(first + lane).min(self.pixels.len() - 1)];
-                let ray = self.camera.generate_lens_ray(xs[lane], ys[lane], [u, v]);
+                let ray = self.through_lens[(first + lane).min(self.pixels.len() - 1)];
                 set_column(&mut rows.origin, at + lane, ray.origin.to_array());
                 set_column(&mut rows.direction, at + lane, ray.direction.to_array());
             }
@@ -206,8 +195,7 @@ fn run_paths(
         }
         progress.pass(sample, estimates.len() as u64);
         if let Some(passes) = &mut passes {
-            let photons = passes.next(&integrator, scene);
-            integrator.gather_from(photons);
+            passes.set_out(sample, &mut integrator, scene);
         }
         let job = Job { scene, integrator: &integrator, camera, settings };
         let counted = estimates
@@ -259,7 +247,7 @@ impl Job<'_, Path> {
         let places: Vec<[f64; 4]> = state.iter().map(|path| path.draw(Purpose::Camera)).collect();
         let through_lens = pixels.iter().zip(&places).zip(state);
         let through_lens = through_lens.filter_map(|((&Pixel { x, y }, &[dx, dy, u, v]), path)| {
-            self.integrator.begin_in_lens([f64::from(x) + dx, f64::from(y) + dy], [u, v], path)
+            self.integrator.begin_behind_lens([f64::from(x) + dx, f64::from(y) + dy], [u, v], path)
         });
         PathRays { camera: self.camera, pixels, through_lens: through_lens.collect(), places }
     }

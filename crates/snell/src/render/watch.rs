@@ -106,8 +106,7 @@ impl<'a> Watch<'a> {
             return;
         }
         if let Some(passes) = &mut paths.passes {
-            let photons = passes.of_pass(number, &paths.integrator, self.scene);
-            paths.integrator.gather_from(photons);
+            passes.set_out(number, &mut paths.integrator, self.scene);
         }
         paths.ready = Some(number);
     }
@@ -139,6 +138,14 @@ impl<'a> Watch<'a> {
     /// Traces one sample of a pixel and gives its colour, which may be no number; see [`Self::samples`].
     pub fn sample<O: Observer>(&self, pixel: [u32; 2], number: u32, scratch: &mut Scratch, observer: &mut O) -> Rgb {
         self.samples(&[(pixel, number)], scratch, observer)[0]
+    }
+
+    /// Traces one sample of a pixel and remembers everything.
+    fn tree(&mut self, pixel: [u32; 2], number: u32) -> RayTree {
+        let mut tree = RayTree::default();
+        self.ready(number);
+        self.sample(pixel, number, &mut Scratch::default(), &mut tree);
+        tree
     }
 
     /// Traces samples, each of a pixel, together; gives their colours. Of paths, all have the number that the watch is
@@ -260,9 +267,7 @@ pub fn explain(
     pixel: [u32; 2],
     sample: u32,
 ) -> Result<RayTree, ViewingError> {
-    let mut tree = RayTree::default();
-    Watch::new(scene, settings)?.sample(pixel, sample, &mut Scratch::default(), &mut tree);
-    Ok(tree)
+    Ok(Watch::new(scene, settings)?.tree(pixel, sample))
 }
 
 /// As [`explain`], of a picture whose paths are traced.
@@ -276,9 +281,5 @@ pub fn explain_path(
     pixel: [u32; 2],
     sample: u32,
 ) -> Result<RayTree, ViewingError> {
-    let mut watch = Watch::paths(scene, settings, paths)?;
-    watch.ready(sample);
-    let mut tree = RayTree::default();
-    watch.sample(pixel, sample, &mut Scratch::default(), &mut tree);
-    Ok(tree)
+    Ok(Watch::paths(scene, settings, paths)?.tree(pixel, sample))
 }

@@ -10,12 +10,67 @@ use super::lights::Arriving;
 use super::lobes::about;
 use super::materials::Boundary;
 use super::sample::{Gathers, Purpose, Vertex};
-use super::spectra::{BLACK, Spectral, WHITE, attenuated, is_black, mean, plus, scaled, times};
+use super::spectra::{
+    BLACK, BodySpectra, Spectral, WHITE, Wavelengths, attenuated, is_black, mean, plus, scaled, times,
+};
 use super::{Path, Step};
 use crate::geometry::QueryScratch;
 use crate::integrator::sink::MAX_PASSES;
 use crate::observe::Observer;
 use crate::task::{MediumStack, RayKind, Term};
+
+/// What becomes of light on its way through a body.
+pub enum Travelled {
+    /// It comes to the end: what is left of it, and one over the probability of that.
+    Through {
+        /// The share that is left.
+        left: Spectral,
+        /// One over the probability.
+        weight: f64,
+    },
+    /// It is scattered before.
+    Scattered {
+        /// Where.
+        distance: f64,
+        /// The share that is left there.
+        left: Spectral,
+        /// One over the density of the distance.
+        weight: f64,
+        /// What the body scatters per world unit.
+        scattering: Spectral,
+        /// The mean of all that it takes away.
+        extinction: f64,
+    },
+}
+
+/// Light on its way through a body up to a distance. Two numbers in [0, 1), of which the first chooses a wavelength, are drawn where the body
+/// scatters.
+pub fn travel(
+    body: &BodySpectra,
+    wavelengths: &Wavelengths,
+    distance: f64,
+    draw: impl FnOnce() -> [f64; 2],
+) -> Travelled {
+    let [absorption, scattering] = body.at(wavelengths.nm());
+    let extinction = plus(absorption, scattering);
+    let left = |distance: f64| extinction.map(|coefficient| attenuated(coefficient, distance));
+    if is_black(scattering) {
+        return Travelled::Through { left: left(distance), weight: 1.0 };
+    }
+    let [choice, u] = draw();
+    let alone = wavelengths.is_hero_alone();
+    let chosen = if alone { 0 } else { ((choice * extinction.len() as f64) as usize).min(extinction.len() - 1) };
+    let reached = if extinction[chosen] > 0.0 { exponential(u, extinction[chosen]) } else { f64::INFINITY };
+    // The density of what happened, over all wavelengths that might have been chosen.
+    let over_choices = |values: Spectral| if alone { values[0] } else { mean(values) };
+    if reached >= distance {
+        let left = left(distance);
+        return Travelled::Through { left, weight: 1.0 / over_choices(left) };
+    }
+    let left = left(reached);
+    let weight = 1.0 / over_choices(times(extinction, left));
+    Travelled::Scattered { distance: reached, left, weight, scattering, extinction: over_choices(extinction) }
+}
 
 /// A straight way to a light.
 #[derive(Clone, Copy, Debug)]
@@ -33,34 +88,25 @@ impl Path {
     pub(super) fn travel<O: Observer>(&self, step: &mut Step<'_, '_, '_, O>, distance: f64) -> bool {
         let Some(inside) = step.out.media.current(step.task.media) else { return false };
         let Some(body) = self.materials.body(inside.material) else { return false };
-        let nm = step.path.wavelengths.nm();
-        let [absorption, scattering] = body.at(nm);
-        let extinction = plus(absorption, scattering);
-        if is_black(scattering) {
-            let left = extinction.map(|coefficient| attenuated(coefficient, distance));
-            step.path.throughput = times(step.path.throughput, left);
-            step.tell_travelled(left);
-            return false;
+        let path = &mut *step.path;
+        let mut drawn = [0.0; 4];
+        let draw = || {
+            drawn = path.draw(Purpose::Medium);
+            [drawn[0], drawn[1]]
+        };
+        match travel(body, &path.wavelengths, distance, draw) {
+            Travelled::Through { left, weight } => {
+                path.throughput = scaled(times(path.throughput, left), weight);
+                step.tell_travelled(left);
+                false
+            }
+            Travelled::Scattered { distance, left, weight, scattering, extinction } => {
+                path.throughput = scaled(times(path.throughput, times(scattering, left)), weight);
+                step.tell_scattered(distance);
+                self.scatter(step, distance, body.anisotropy, extinction, [drawn[2], drawn[3]]);
+                true
+            }
         }
-        let [choice, u, first, second] = step.path.draw(Purpose::Medium);
-        let alone = step.path.wavelengths.is_hero_alone();
-        let chosen = if alone { 0 } else { ((choice * extinction.len() as f64) as usize).min(extinction.len() - 1) };
-        let reached = if extinction[chosen] > 0.0 { exponential(u, extinction[chosen]) } else { f64::INFINITY };
-        // The density of what happened, over all wavelengths that might have been chosen.
-        let over_choices = |values: Spectral| if alone { values[0] } else { mean(values) };
-        if reached >= distance {
-            let left = extinction.map(|coefficient| attenuated(coefficient, distance));
-            let probability = over_choices(left);
-            step.path.throughput = scaled(times(step.path.throughput, left), 1.0 / probability);
-            step.tell_travelled(left);
-            return false;
-        }
-        let left = extinction.map(|coefficient| attenuated(coefficient, reached));
-        let density = over_choices(times(extinction, left));
-        step.path.throughput = scaled(times(step.path.throughput, times(scattering, left)), 1.0 / density);
-        step.tell_scattered(reached);
-        self.scatter(step, reached, body.anisotropy, over_choices(extinction), [first, second]);
-        true
     }
 
     /// Scatters a path inside a body.

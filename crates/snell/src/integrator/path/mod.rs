@@ -92,11 +92,6 @@ impl Path {
         PhotonPasses::new(self, seed, pixels)
     }
 
-    /// Sets the photons that paths gather from now on.
-    pub fn gather_from(&mut self, photons: Option<PhotonMap>) {
-        self.photons = photons;
-    }
-
     /// The size of a pixel as it is seen at a point, world units.
     fn pixel_size(&self, point: Point3) -> f64 {
         match self.camera.projection() {
@@ -121,11 +116,14 @@ impl Path {
         PathSample::new(sampler, wavelengths)
     }
 
-    /// The ray with which a path begins inside a real lens, from a raster position, by two numbers in [0, 1) for the way through it;
-    /// `None` where the camera has no such lens. Wavelengths that go different ways through it begin with different rays, so the path
+    /// The ray with which a path begins behind a lens, from a raster position, by two numbers in [0, 1) for the way through it;
+    /// `None` where the camera has none. Wavelengths that go different ways through a real one begin with different rays, so the path
     /// keeps the hero alone. On a way that leads against a rim it carries nothing.
-    pub fn begin_in_lens(&self, place: [f64; 2], u: [f64; 2], path: &mut PathSample) -> Option<Ray> {
-        let lens = self.lens.as_ref()?;
+    pub fn begin_behind_lens(&self, place: [f64; 2], u: [f64; 2], path: &mut PathSample) -> Option<Ray> {
+        let Some(lens) = &self.lens else {
+            let [x, y] = place;
+            return self.camera.generate_lens_ray(x, y, u);
+        };
         if lens.disperses() {
             path.wavelengths.give_up_others();
         }

@@ -16,15 +16,15 @@
 
 use rayon::prelude::*;
 use snell_math::sampler::Sampler;
-use snell_math::warp::exponential;
 use snell_math::{Point3, Ray, Vector3, portable};
 
 use super::emission::{Emission, Emitted};
 use super::lights::LightIndex;
 use super::lobes::{Lobes, Transport};
 use super::materials::{Boundary, Meeting};
+use super::medium::{Travelled, travel};
 use super::photon_map::{Photon, PhotonMap, place};
-use super::spectra::{BLACK, Spectral, Wavelengths, attenuated, is_black, largest, mean, plus, scaled, times};
+use super::spectra::{BLACK, Spectral, Wavelengths, is_black, largest, scaled, times};
 use super::{Path, ROULETTE_DEPTH};
 use crate::compile::CompiledScene;
 use crate::geometry::QueryScratch;
@@ -48,7 +48,6 @@ const PHOTON_DEPTH: u32 = 63;
 pub struct PhotonPasses {
     count: u32,
     seed: u32,
-    next: u32,
     /// Of the first pass, on surfaces and in media; unknown before a pass was made.
     first_radii: Option<[f64; 2]>,
 }
@@ -58,29 +57,27 @@ impl PhotonPasses {
     pub fn new(path: &Path, seed: u32, pixels: u64) -> Option<Self> {
         path.emission.as_ref()?;
         let count = (pixels / 4).clamp(u64::from(PORTION), 1 << 20) as u32;
-        Some(Self { count, seed, next: 0, first_radii: None })
+        Some(Self { count, seed, first_radii: None })
     }
 
-    /// The photons of the next pass.
-    pub fn next(&mut self, path: &Path, scene: &CompiledScene) -> Option<PhotonMap> {
-        self.next += 1;
-        self.of_pass(self.next - 1, path, scene)
+    /// Lets the photons of a pass set out, those of its number whatever came before, for paths to gather.
+    pub fn set_out(&mut self, number: u32, path: &mut Path, scene: &CompiledScene) {
+        path.photons = self.photons(number, path, scene);
     }
 
-    /// The photons of any pass: those that [`Self::next`] gives in its turn.
-    pub fn of_pass(&mut self, number: u32, path: &Path, scene: &CompiledScene) -> Option<PhotonMap> {
+    fn photons(&mut self, number: u32, path: &Path, scene: &CompiledScene) -> Option<PhotonMap> {
         let emission = path.emission.as_ref()?;
         let pass = |number: u32| {
             let [u, ..] = Sampler::new(self.seed, [u32::MAX, 0], number).set(0);
             Pass { path, scene, emission, wavelengths: Wavelengths::sample(u), seed: self.seed, number }
         };
-        let photons = pass(number).trace(self.count);
+        let this = pass(number);
+        let photons = this.trace(self.count);
         let first = match (self.first_radii, number) {
             (Some(first), _) => first,
             (None, 0) => first_radii(path, &photons),
             (None, _) => first_radii(path, &pass(0).trace(self.count)),
         };
-        let wavelengths = pass(number).wavelengths;
         self.first_radii = Some(first);
         let shrunk = |step: f64| (step + ALPHA - 1.0).max(ALPHA) / step;
         let [disk, ball] = first;
@@ -88,7 +85,7 @@ impl PhotonPasses {
         let disk = steps().fold(disk, |radius, step| radius * shrunk(step).sqrt());
         // As their volumes shrink, not their areas. (Knaus and Zwicker, "Progressive Photon Mapping: A Probabilistic Approach", 2011, section 4.2.)
         let ball = steps().fold(ball, |radius, step| radius * portable::cbrt(shrunk(step)));
-        Some(PhotonMap::new(photons, [disk, ball], self.count, wavelengths))
+        Some(PhotonMap::new(photons, [disk, ball], self.count, this.wavelengths))
     }
 }
 
@@ -260,39 +257,28 @@ struct Flight {
 }
 
 impl Flight {
-    /// Goes through the body that is there to a distance; gives the place where it is scattered before. See
-    /// [`Path::travel`](super::Path) for how that is chosen.
+    /// Goes through the body that is there to a distance; gives the place where it is scattered before.
     fn travel(&mut self, path: &Path, distance: f64, u: f64, media: &MediumStacks) -> Option<Point3> {
         let body = media.current(self.media).and_then(|inside| path.materials.body(inside.material));
         let Some(body) = body else {
             self.travelled += distance;
             return None;
         };
-        let [absorption, scattering] = body.at(self.wavelengths.nm());
-        let extinction = plus(absorption, scattering);
-        let left = |distance: f64| extinction.map(|extinction| attenuated(extinction, distance));
-        if is_black(scattering) {
-            self.power = times(self.power, left(distance));
-            self.travelled += distance;
-            return None;
-        }
-        let alone = self.wavelengths.is_hero_alone();
-        let over_choices = |values: Spectral| if alone { values[0] } else { mean(values) };
         // One number chooses a wavelength, and what is left of it the distance.
-        let choices = if alone { 1.0 } else { extinction.len() as f64 };
-        let chosen = ((u * choices) as usize).min(extinction.len() - 1);
-        let u = (u * choices).fract();
-        let reached = if extinction[chosen] > 0.0 { exponential(u, extinction[chosen]) } else { f64::INFINITY };
-        if reached >= distance {
-            self.power = scaled(times(self.power, left(distance)), 1.0 / over_choices(left(distance)));
-            self.travelled += distance;
-            return None;
+        let choices = if self.wavelengths.is_hero_alone() { 1.0 } else { self.power.len() as f64 };
+        match travel(body, &self.wavelengths, distance, || [u, (u * choices).fract()]) {
+            Travelled::Through { left, weight } => {
+                self.power = scaled(times(self.power, left), weight);
+                self.travelled += distance;
+                None
+            }
+            // What the medium scatters of it is in what paths carry that come here.
+            Travelled::Scattered { distance, left, weight, .. } => {
+                self.power = scaled(times(self.power, left), weight);
+                self.travelled += distance;
+                Some(self.ray.at(distance))
+            }
         }
-        // What the medium scatters of it is in what paths carry that come here.
-        let density = over_choices(times(extinction, left(reached)));
-        self.power = scaled(times(self.power, left(reached)), 1.0 / density);
-        self.travelled += reached;
-        Some(self.ray.at(reached))
     }
 
     fn give_up_others(&mut self) {
