@@ -13,6 +13,7 @@ use snell_scene::scene;
 
 use self::lens::LensFrame;
 pub use self::lens::RealLens;
+use crate::differential::RayDifferential;
 use crate::viewing::{Pipeline, Rectangle, RectangleMap, ViewVolume, ViewingError, view_axes};
 pub use crate::viewing::{Projection, Rectangle as Window};
 
@@ -186,6 +187,13 @@ impl Camera {
             lens.film_width * (self.window.top - self.window.bottom) / (self.window.right - self.window.left),
         ];
         Some(RealLens::new(lens, frame, film))
+    }
+
+    /// How the ray through a raster position differs from those through positions some pixels to the right and down.
+    #[must_use]
+    pub fn ray_differential(&self, x: f64, y: f64, spacing: f64) -> RayDifferential {
+        let neighbours = [self.generate_ray(x + spacing, y), self.generate_ray(x, y + spacing)];
+        RayDifferential::between(&self.generate_ray(x, y), [&neighbours[0], &neighbours[1]])
     }
 
     /// How far along a ray of [`Camera::generate_ray`] the far plane is; infinite where there is none.

@@ -3,7 +3,8 @@
 use snell_math::lanes::{Bits, LaneVector, Lanes, WIDTH};
 use snell_math::{Normal3, Point3, Ray, Rgb, Vector3};
 
-use crate::texture::RELATIVE_INSET;
+use crate::differential::SurfaceDifferential;
+use crate::texture::{Footprint, RELATIVE_INSET};
 
 /// A body that has an inside: which one a ray enters or leaves. Two placements of one prototype are two bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -77,6 +78,22 @@ pub struct SurfaceRows {
     pub whole: [Option<SurfaceInteraction>; WIDTH],
     /// The hits whose objects stand in the world as they are, so that points of the world are points of theirs.
     pub unplaced: Bits,
+    /// What neighbouring rays meet, where it was asked for; in other scenes nothing.
+    pub around: [Surroundings; WIDTH],
+}
+
+/// What the neighbours of a ray meet beside it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surroundings {
+    /// How the surface differs there.
+    pub differential: SurfaceDifferential,
+    /// The part of the surface that the ray stands for.
+    pub footprint: Footprint,
+}
+
+impl Surroundings {
+    /// A ray that stands for a point.
+    pub const NONE: Self = Self { differential: SurfaceDifferential::NONE, footprint: Footprint::SHARP };
 }
 
 impl Default for SurfaceRows {
@@ -90,6 +107,7 @@ impl Default for SurfaceRows {
             solid: [SolidId(0); WIDTH],
             whole: [const { None }; WIDTH],
             unplaced: Bits::NONE,
+            around: [Surroundings::NONE; WIDTH],
         }
     }
 }

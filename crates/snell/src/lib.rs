@@ -4,6 +4,7 @@ pub mod accel;
 pub mod camera;
 pub mod compile;
 pub mod csg;
+pub mod differential;
 pub mod drawing;
 pub mod explain;
 pub mod film;

@@ -361,11 +361,11 @@ impl Material {
         }
     }
 
-    /// How thick the film is at a hit, in nanometres; 0 without one.
-    pub fn film_thickness(&self, textures: &Textures, interaction: &SurfaceInteraction) -> f64 {
+    /// How thick the film is at a hit, averaged over a footprint around it, in nanometres; 0 without one.
+    pub fn film_thickness(&self, textures: &Textures, interaction: &SurfaceInteraction, footprint: &Footprint) -> f64 {
         let Some(scene::Film { thickness_nm, variation, .. }) = self.film() else { return 0.0 };
         let Some(scene::FilmVariation { to_nm, by }) = variation else { return *thickness_nm };
-        let share = f64::from(textures.evaluate(*by, &coordinates(interaction)).mean()).clamp(0.0, 1.0);
+        let share = f64::from(textures.evaluate(*by, &coordinates(interaction, footprint)).mean()).clamp(0.0, 1.0);
         thickness_nm * (1.0 - share) + to_nm * share
     }
 
@@ -393,6 +393,12 @@ impl Material {
     /// The spectrum of its light, where the scene gives one.
     pub fn emission_spectrum(&self) -> Option<&Spectrum> {
         self.emission_spectrum.as_ref()
+    }
+
+    /// True where rays go on from it in single directions: it mirrors, somewhere at least, or is the boundary of a body.
+    pub fn sends_rays(&self) -> bool {
+        let is_mirror = !self.base.mirror.is_black() || self.textured.iter().any(|(slot, _)| *slot == Slot::Mirror);
+        is_mirror || self.metal.is_some() || self.body.is_some()
     }
 
     /// Its light, where it is the same everywhere.
@@ -445,12 +451,12 @@ impl Material {
         bsdf
     }
 
-    /// The lobes at a hit.
+    /// The lobes at a hit, averaged over a footprint around it where they are pictures.
     #[inline]
-    pub fn bsdf(&self, textures: &Textures, interaction: &SurfaceInteraction) -> Bsdf {
+    pub fn bsdf(&self, textures: &Textures, interaction: &SurfaceInteraction, footprint: &Footprint) -> Bsdf {
         let mut bsdf = self.base;
         if !self.textured.is_empty() {
-            let coordinates = coordinates(interaction);
+            let coordinates = coordinates(interaction, footprint);
             let mut before = None;
             for &(slot, texture) in &self.textured {
                 // The ambient colour is most often the diffuse one.
@@ -479,14 +485,14 @@ impl Material {
 
 /// Where textures are asked at a hit.
 #[inline]
-fn coordinates(interaction: &SurfaceInteraction) -> TextureCoordinates {
+fn coordinates(interaction: &SurfaceInteraction, footprint: &Footprint) -> TextureCoordinates {
     TextureCoordinates {
         object_point: interaction.object_point,
         object_inside: interaction.object_inside,
         world_point: interaction.point,
         world_inside: interaction.inside(),
         uv: interaction.uv,
-        footprint: Footprint::SHARP,
+        footprint: *footprint,
     }
 }
 

@@ -33,16 +33,18 @@ const ROOMS: &[Room] = &[
     Room { name: "optics", may_use: &[] },
     Room { name: "texture", may_use: &[] },
     Room { name: "light", may_use: &[] },
-    Room { name: "camera", may_use: &["viewing"] },
+    // How neighbouring rays differ.
+    Room { name: "differential", may_use: &[] },
+    Room { name: "camera", may_use: &["viewing", "differential"] },
     Room { name: "film", may_use: &[] },
     Room { name: "statistics", may_use: &[] },
     // Patterns are read a little inside the surface, by as much as textures say.
-    Room { name: "interaction", may_use: &["texture"] },
+    Room { name: "interaction", may_use: &["texture", "differential"] },
     // Metals are known by their indices.
     Room { name: "material", may_use: &["texture", "interaction", "optics"] },
-    Room { name: "task", may_use: &["interaction"] },
+    Room { name: "task", may_use: &["interaction", "differential"] },
     Room { name: "observe", may_use: &["interaction", "material", "task"] },
-    Room { name: "geometry", may_use: &["accel", "shape", "csg", "texture", "interaction", "task"] },
+    Room { name: "geometry", may_use: &["accel", "shape", "csg", "texture", "differential", "interaction", "task"] },
     Room {
         name: "compile",
         may_use: &[
@@ -52,6 +54,7 @@ const ROOMS: &[Room] = &[
             "texture",
             "light",
             "camera",
+            "differential",
             "interaction",
             "material",
             "task",
@@ -67,6 +70,7 @@ const ROOMS: &[Room] = &[
             "texture",
             "light",
             "camera",
+            "differential",
             "statistics",
             "interaction",
             "material",
@@ -82,13 +86,24 @@ const ROOMS: &[Room] = &[
     },
     Room {
         name: "trace",
-        may_use: &["optics", "statistics", "interaction", "task", "observe", "geometry", "compile", "integrator"],
+        may_use: &[
+            "optics",
+            "differential",
+            "statistics",
+            "interaction",
+            "task",
+            "observe",
+            "geometry",
+            "compile",
+            "integrator",
+        ],
     },
     Room {
         name: "render",
         may_use: &[
             "viewing",
             "camera",
+            "differential",
             "film",
             "statistics",
             "task",

@@ -29,5 +29,6 @@ fn decode(asset: &ImageAsset) -> Result<TextureImage, String> {
     let picture =
         snell_image::decode(&asset.bytes, &snell_image::Limits::default()).map_err(|error| error.to_string())?;
     let (width, height) = picture.image.size();
-    TextureImage::new(width, height, picture.image.into_pixels()).map_err(|error| error.to_string())
+    let image = TextureImage::new(width, height, picture.image.into_pixels()).map_err(|error| error.to_string())?;
+    Ok(image.with_levels())
 }

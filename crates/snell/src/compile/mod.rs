@@ -18,8 +18,9 @@ use snell_scene::{Diagnostic, Severity, Span};
 pub use names::ObjectNames;
 pub use overlap::overlapping_bodies;
 
+use crate::differential::RayDifferential;
 use crate::geometry::{Geometry, Hit, QueryScratch};
-use crate::interaction::SurfaceInteraction;
+use crate::interaction::{SurfaceInteraction, Surroundings};
 use crate::light::{Light, LightOrigin};
 use crate::material::Material;
 use crate::task::{Inside, MediumStack, MediumStacks};
@@ -56,6 +57,8 @@ pub struct CompiledScene {
     body_spans: BTreeMap<u32, Span>,
     /// Any light goes through any material.
     has_bodies: bool,
+    /// Some picture is seen, on a surface or in the background.
+    sees_pictures: bool,
 }
 
 /// A light that is seen under a smaller angle, in radians, is as good as a point.
@@ -133,12 +136,13 @@ impl CompiledScene {
             material_names: material_names(scene),
             light_names: names(scene.lights.iter().map(|light| light.name.as_deref()), "light"),
             warnings: diagnostics,
-            background,
             body_spans,
             indices_d: materials.iter().map(|m| m.body.as_ref().map_or(1.0, |b| b.ior.index(SODIUM_D))).collect(),
             has_bodies: materials.iter().any(|m| m.body.is_some()),
+            sees_pictures: background.is_picture() || materials.iter().any(|m| m.spaces(&textures).footprint),
             materials,
             textures,
+            background,
         })
     }
 
@@ -168,6 +172,28 @@ impl CompiledScene {
     #[inline]
     pub fn index_d(&self, inside: Option<Inside>) -> f64 {
         inside.map_or(1.0, |inside| self.indices_d[inside.material as usize])
+    }
+
+    /// True where some picture is seen, on a surface or in the background: rays know then how their neighbours differ, so that it is
+    /// not seen point by point.
+    #[inline]
+    pub fn sees_pictures(&self) -> bool {
+        self.sees_pictures
+    }
+
+    /// What the neighbours of a ray meet, where the material makes something of it.
+    pub fn surroundings(
+        &self,
+        ray: &Ray,
+        hit: &Hit,
+        interaction: &SurfaceInteraction,
+        differential: &RayDifferential,
+    ) -> Surroundings {
+        let material = &self.materials[interaction.material as usize];
+        if !(material.sends_rays() || self.geometry.spaces[interaction.material as usize].footprint) {
+            return Surroundings::NONE;
+        }
+        self.geometry.surroundings(ray, hit, interaction, differential)
     }
 
     /// The bodies that a point is in, as a stack with the innermost on top.

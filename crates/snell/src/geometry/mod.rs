@@ -11,6 +11,7 @@ mod packets;
 mod placed;
 mod space;
 mod surfaces;
+mod surroundings;
 #[cfg(test)]
 mod tests;
 
@@ -262,20 +263,21 @@ impl Geometry {
     #[inline]
     pub fn interaction(&self, ray: &Ray, hit: &Hit) -> SurfaceInteraction {
         if hit.inner == NONE {
-            return self.interaction_in(&self.world, ray, hit, hit.primitive, NONE);
+            return self.interaction_in(&self.world, ray, hit, hit.primitive, NONE, false);
         }
-        self.interaction_of_instance(ray, hit)
+        self.interaction_of_instance(ray, hit, false)
     }
 
     #[inline(never)]
-    fn interaction_of_instance(&self, ray: &Ray, hit: &Hit) -> SurfaceInteraction {
+    fn interaction_of_instance(&self, ray: &Ray, hit: &Hit, is_beside: bool) -> SurfaceInteraction {
         let Primitive::Instance { prototype, placement, material } = &self.world.primitives[hit.primitive as usize]
         else {
             unreachable!("only hits of instances have an inner primitive");
         };
         let placement = &self.world.placements[*placement as usize];
         let space = &self.prototypes[*prototype as usize];
-        let mut interaction = self.interaction_in(space, &placement.to_local(ray), hit, hit.inner, *material);
+        let mut interaction =
+            self.interaction_in(space, &placement.to_local(ray), hit, hit.inner, *material, is_beside);
         let carried = placement.carry_out(&SurfacePoint {
             point: interaction.point,
             error: interaction.error,
@@ -290,7 +292,8 @@ impl Geometry {
         interaction
     }
 
-    /// The interaction in the space that the primitive and the ray are in. Inlined, since it is too large to be moved.
+    /// The interaction in the space that the primitive and the ray are in. Inlined, since it is too large to be moved. Where it
+    /// `is_beside` a hit, the ray need not meet the very triangle.
     #[inline(always)]
     fn interaction_in(
         &self,
@@ -299,6 +302,7 @@ impl Geometry {
         hit: &Hit,
         index: u32,
         inherited_material: u32,
+        is_beside: bool,
     ) -> SurfaceInteraction {
         let primitive = &space.primitives[index as usize];
         let attributes = &space.attributes[index as usize];
@@ -320,7 +324,11 @@ impl Geometry {
             }
             Primitive::Mesh { mesh, .. } => {
                 let mesh = &self.meshes[*mesh as usize];
-                let local = mesh.hit(local_ray, hit.place.part, hit.t);
+                let local = if is_beside {
+                    mesh.beside(hit.place.part, local_ray.at(hit.t))
+                } else {
+                    mesh.hit(local_ray, hit.place.part, hit.t)
+                };
                 vertex_color = mesh.color(&local);
                 mesh.surface(local_ray, &local)
             }

@@ -8,15 +8,17 @@ mod sink;
 mod sink_tests;
 mod whitted;
 
+use snell_math::Ray;
 use snell_math::lanes::{Bits, Lanes};
 
 use crate::camera::{Camera, Projection, Window};
 use crate::compile::CompiledScene;
+use crate::differential::RayDifferential;
 use crate::geometry::HitRows;
-use crate::interaction::SurfaceRows;
+use crate::interaction::{SurfaceRows, Surroundings};
 use crate::observe::Observer;
 use crate::task::RayRows;
-use crate::texture::ViewProjection;
+use crate::texture::{SeenAtOnce, ViewProjection};
 
 pub use path::{Path, PathSample, PhotonMap, PhotonPasses, Purpose};
 pub(crate) use sink::QUEUES;
@@ -49,6 +51,60 @@ pub trait Integrator: Sync {
         surfaces: &mut SurfaceRows,
         out: &mut Sink<'_, O>,
     );
+}
+
+/// Works out what the neighbours of rays meet, those from place `at` on that `met` surfaces, where pictures are seen.
+#[inline(always)]
+fn look_around<O: Observer>(
+    scene: &CompiledScene,
+    rays: &RayRows,
+    at: usize,
+    met: Bits,
+    hits: &HitRows,
+    surfaces: &mut SurfaceRows,
+    out: &Sink<'_, O>,
+) {
+    if scene.sees_pictures() {
+        for lane in met.lanes().map(|lane| at + lane) {
+            surfaces.around[lane] = surroundings(scene, rays, lane, hits, surfaces, out);
+        }
+    }
+}
+
+/// As above, of one of them.
+#[inline(never)]
+fn surroundings<O: Observer>(
+    scene: &CompiledScene,
+    rays: &RayRows,
+    lane: usize,
+    hits: &HitRows,
+    surfaces: &SurfaceRows,
+    out: &Sink<'_, O>,
+) -> Surroundings {
+    match (hits.hit(lane), out.differential(rays.notes[lane].id)) {
+        (Some(hit), Some(differential)) => {
+            let interaction = scene.geometry.interaction_of(hits, surfaces, lane);
+            scene.surroundings(&rays.ray(lane), &hit, &interaction, &differential)
+        }
+        _ => Surroundings::NONE,
+    }
+}
+
+/// What of the background a ray of the camera sees at once, at a position of the picture.
+fn seen_at_once(camera: &Camera, ray: &Ray, position: [f64; 2], differential: RayDifferential) -> SeenAtOnce {
+    let positions = differential.origin.map(|step| {
+        let there = camera.picture_position(ray.origin + step);
+        [there[0] - position[0], there[1] - position[1]]
+    });
+    SeenAtOnce { directions: differential.direction, positions }
+}
+
+/// What of the background any other ray sees at once.
+fn seen_in_directions(differential: Option<RayDifferential>) -> SeenAtOnce {
+    differential.map_or(SeenAtOnce::POINT, |RayDifferential { direction, .. }| SeenAtOnce {
+        directions: direction,
+        ..SeenAtOnce::POINT
+    })
 }
 
 /// How a camera sees directions: what photographs in the background are looked up by.

@@ -1,15 +1,16 @@
 //! Where an integrator's `shade` puts its results, and the rules that decide which rays are followed.
 
 use snell_math::lanes::{Bits, End, Floats, LaneColor, LaneVector, Lanes, WIDTH};
-use snell_math::{Ray, Rgb};
+use snell_math::{Ray, Rgb, Vector3};
 use snell_scene::scene::Shadows;
 
-use crate::interaction::SurfaceInteraction;
+use crate::differential::RayDifferential;
+use crate::interaction::{SurfaceInteraction, SurfaceRows};
 use crate::observe::Observer;
 use crate::statistics::Statistics;
 use crate::task::{
-    Band, Cut, MediumStack, MediumStacks, QuestionNotes, QuestionQueue, RayKind, RayNotes, RayQueue, RayRows, RayTask,
-    SampleSums, ShadowQuestion, Term, column,
+    Band, Cut, Differentials, MediumStack, MediumStacks, QuestionNotes, QuestionQueue, RayKind, RayNotes, RayQueue,
+    RayRows, RayTask, SampleSums, ShadowQuestion, Term, column,
 };
 
 /// The rules of the recursion.
@@ -92,6 +93,8 @@ pub struct Sink<'a, O> {
     pub(crate) observer: &'a mut O,
     pub(crate) rules: Rules,
     pub(crate) next_id: &'a mut u32,
+    /// How the rays' neighbours differ from them.
+    pub(crate) differentials: &'a mut Differentials,
 }
 
 /// Rays to be spawned by surfaces; see [`Sink::spawn`].
@@ -109,6 +112,10 @@ pub struct Spawn<'a, L: Lanes> {
     pub media: Option<&'a [MediumStack; WIDTH]>,
     /// The band that they carry where their parents carry all light.
     pub band: Option<Band>,
+    /// Where their parents met surfaces.
+    pub surfaces: &'a SurfaceRows,
+    /// Of refracted ones the index before over the one beyond.
+    pub eta: L,
 }
 
 /// A question to one light, side by side; see [`ShadowQuestion`].
@@ -272,6 +279,40 @@ impl<O: Observer> Sink<'_, O> {
             rest = rest.without(same);
             self.spawn_into(queue, parents, same, spawn, &ids);
         }
+        if self.differentials.are_wanted() {
+            let mut eta = [1.0; WIDTH];
+            spawn.eta.store(&mut eta, 0);
+            self.differ(parents, followed, spawn.kind, spawn.surfaces, &eta, &ids);
+        }
+    }
+
+    /// Keeps how the neighbours of rays differ that were spawned; see [`Spawn`].
+    #[inline(never)]
+    fn differ(
+        &mut self,
+        parents: &ShadedRays<'_>,
+        followed: Bits,
+        kind: RayKind,
+        surfaces: &SurfaceRows,
+        eta: &[f64; WIDTH],
+        ids: &[u32; WIDTH],
+    ) {
+        for lane in followed.lanes() {
+            let place = parents.at + lane;
+            let direction = Vector3::from(column(&parents.rows.direction, place));
+            let surface = &surfaces.around[place].differential;
+            let differential = match kind {
+                RayKind::Refracted => surface.refracted(direction, eta[lane]),
+                _ => surface.reflected(direction),
+            };
+            self.differentials.set(ids[lane], differential);
+        }
+    }
+
+    /// How the neighbours of a ray differ from it, where that is of use.
+    #[inline(always)]
+    pub fn differential(&self, id: u32) -> Option<RayDifferential> {
+        self.differentials.are_wanted().then(|| self.differentials.of(id))
     }
 
     /// As above, those that go to one queue, with their numbers.
@@ -315,7 +356,12 @@ impl<O: Observer> Sink<'_, O> {
             return;
         }
         let id = self.take_id();
+        let from = task.ray.origin;
         let task = RayTask { ray, media, id, parent: task.id, passes: task.passes + 1, ..*task };
+        if let Some(differential) = self.differential(task.parent) {
+            let way = (task.ray.origin - from).dot(task.ray.direction);
+            self.differentials.set(id, differential.at(way));
+        }
         let queue = self.take_queue(task.sample);
         self.next[queue].push(&task);
         self.observer.ray(&task);
@@ -334,14 +380,24 @@ impl<O: Observer> Sink<'_, O> {
         self.observer.term(task.id, term, share);
     }
 
-    /// Sends a path on by one ray, one deeper than its parent.
+    /// Sends a path on by one ray, one deeper than its parent, with how its neighbours differ from it.
     #[inline]
-    pub fn send(&mut self, parent: &RayTask, kind: RayKind, ray: Ray, media: MediumStack) {
+    pub fn send(
+        &mut self,
+        parent: &RayTask,
+        kind: RayKind,
+        ray: Ray,
+        media: MediumStack,
+        differential: Option<RayDifferential>,
+    ) {
         self.count_ray(kind, 1);
         let depth = parent.depth + 1;
         self.statistics.max_depth = self.statistics.max_depth.max(u32::from(depth));
         let id = self.take_id();
         let task = RayTask { ray, media, id, parent: parent.id, depth, passes: 0, kind, ..*parent };
+        if let Some(differential) = differential {
+            self.differentials.set(id, differential);
+        }
         let queue = self.take_queue(task.sample);
         self.next[queue].push(&task);
         self.observer.ray(&task);

@@ -7,9 +7,12 @@ use snell_math::{Point3, Ray, Rgb, Vector3};
 use snell_scene::scene::Shadows;
 
 use super::{QUEUES, Rules, ShadedRays, Sink, Spawn};
+use crate::interaction::SurfaceRows;
 use crate::observe::{CutRay, RayTree};
 use crate::statistics::Statistics;
-use crate::task::{Cut, MediumStack, MediumStacks, QuestionQueue, RayKind, RayQueue, RayTask, SampleSums, Term};
+use crate::task::{
+    Cut, Differentials, MediumStack, MediumStacks, QuestionQueue, RayKind, RayQueue, RayTask, SampleSums, Term,
+};
 
 const RULES: Rules = Rules { depth: 3, min_weight: 0.01, weightless_rays: false, shadows: Shadows::Filtered };
 
@@ -42,7 +45,7 @@ fn with(
     parents.push(parent);
     let rows = *parents.rows().next().expect("one ray").0;
     let (mut media, mut statistics, mut next_id) = (MediumStacks::default(), Statistics::default(), 1);
-    let (mut tree, mut spawned) = (RayTree::default(), [0]);
+    let (mut tree, mut spawned, mut differentials) = (RayTree::default(), [0], Differentials::default());
     crate::observe::Observer::ray(&mut tree, parent);
     statistics.camera_rays = 1;
     let mut sink = Sink {
@@ -55,6 +58,7 @@ fn with(
         observer: &mut tree,
         rules,
         next_id: &mut next_id,
+        differentials: &mut differentials,
     };
     call(&mut sink, &ShadedRays { rows: &rows, at: 0, throughput: &rows.throughput });
     let tasks =
@@ -69,7 +73,9 @@ fn spawn(sink: &mut Sink<'_, RayTree>, parents: &ShadedRays<'_>, weight: f32) {
     if followed.any() {
         let (origin, direction) = (Point3::ORIGIN.into(), Vector3::Y.into());
         let kind = RayKind::Reflected;
-        sink.spawn(parents, followed, &Spawn { kind, origin, direction, throughput, media: None, band: None });
+        let (media, band, surfaces, eta) = (None, None, &SurfaceRows::default(), 1.0);
+        let spawn = Spawn { kind, origin, direction, throughput, media, band, surfaces, eta };
+        sink.spawn(parents, followed, &spawn);
     }
 }
 

@@ -10,7 +10,10 @@ use snell_math::{Normal3, Ray, Rgb, Vector3};
 use snell_scene::scene::Medium;
 
 use super::dispersion::Dispersion;
-use super::{Integrator, LaneQuestions, ShadedRays, Sink, Spawn, scattering, view_of};
+use super::{
+    Integrator, LaneQuestions, ShadedRays, Sink, Spawn, look_around, scattering, seen_at_once, seen_in_directions,
+    view_of,
+};
 use crate::camera::{Camera, Projection};
 use crate::compile::CompiledScene;
 use crate::geometry::{Geometry, HitRows};
@@ -20,7 +23,7 @@ use crate::material::{LaneBsdf, Material};
 use crate::observe::{BoundaryCrossing, Observer};
 use crate::optics::{beer_lambert, fresnel_dielectric_lanes, reflect_lanes, refract_lanes};
 use crate::task::{Band, Crossing, Inside, MediumStack, RayKind, RayRows, RayTask, Term, column, set_column};
-use crate::texture::{LaneCoordinates, ViewProjection};
+use crate::texture::{Footprint, LaneCoordinates, SeenAtOnce, ViewProjection};
 
 /// Recursive ray tracing over lights without extent.
 #[derive(Clone, Debug)]
@@ -48,13 +51,19 @@ impl Whitted {
     }
 
     /// What a ray sees that leaves the scene.
-    fn background(&self, scene: &CompiledScene, task: &RayTask) -> Rgb {
+    fn background<O: Observer>(&self, scene: &CompiledScene, task: &RayTask, out: &Sink<'_, O>) -> Rgb {
+        let (background, direction) = (&scene.background, task.ray.direction);
+        if !background.is_picture() {
+            return background.evaluate(direction, &SeenAtOnce::POINT, &self.view);
+        }
+        let differential = out.differential(task.id);
         // The parallel rays of an orthographic camera see a photograph by where they are, not by where they go.
         if task.kind == RayKind::Camera && self.camera.projection() == Projection::Orthographic {
             let position = self.camera.picture_position(task.ray.origin);
-            return scene.background.evaluate_at_pixel(position, task.ray.direction);
+            let seen = seen_at_once(&self.camera, &task.ray, position, differential.unwrap_or_default());
+            return background.evaluate_at_pixel(position, direction, &seen);
         }
-        scene.background.evaluate(task.ray.direction, &self.view)
+        background.evaluate(direction, &seen_in_directions(differential), &self.view)
     }
 }
 
@@ -62,6 +71,7 @@ impl Whitted {
 struct Shading<'a, 'b, 's, L, O> {
     scene: &'a CompiledScene,
     rays: ShadedRays<'a>,
+    surfaces: &'a SurfaceRows,
     surface: LaneSurface<L>,
     /// To the viewers.
     wo: LaneVector<L>,
@@ -115,6 +125,7 @@ impl Integrator for Whitted {
         }
         let ends = (&rays.rows.origin, &rays.rows.direction);
         scene.geometry.surfaces::<L>(ends, at, hits, met, surfaces);
+        look_around(scene, rays.rows, at, met, hits, surfaces, out);
         if out.is_watched() {
             for lane in met.lanes() {
                 let interaction = scene.geometry.interaction_of(hits, surfaces, at + lane);
@@ -152,7 +163,8 @@ impl Whitted {
             None => {
                 let mut rows = [[0.0; WIDTH]; 3];
                 for lane in missed.lanes() {
-                    set_column(&mut rows, lane, self.background(scene, &rays.task(lane)).to_array());
+                    let color = self.background(scene, &rays.task(lane), out);
+                    set_column(&mut rows, lane, color.to_array());
                 }
                 LaneColor::load(&rows, 0)
             }
@@ -208,7 +220,7 @@ impl Whitted {
                 out.observer().surface(rays.rows.notes[rays.at + lane].id, &bsdf.lane(lane));
             }
         }
-        let mut shading = Shading { scene, rays: *rays, surface, wo: -direction, out };
+        let mut shading = Shading { scene, rays: *rays, surfaces, surface, wo: -direction, out };
         shading.add_local_terms(lanes, &bsdf);
         let mirrored = lanes.without(bsdf.mirror.is_black());
         if mirrored.any() {
@@ -218,7 +230,7 @@ impl Whitted {
             let normal = shading.surface.consistent_normal(shading.wo);
             let LaneBsdf { reflect, transmit, .. } = bsdf;
             let boundary = Boundary { crossings: &crossings, normal, fresnel, reflect, transmit };
-            self.spawn_at_interface(lanes, &boundary, surfaces, &mut shading);
+            self.spawn_at_interface(lanes, &boundary, &mut shading);
         }
     }
 
@@ -228,12 +240,11 @@ impl Whitted {
         &self,
         lanes: Bits,
         boundary: &Boundary<'_, L>,
-        surfaces: &SurfaceRows,
         shading: &mut Shading<'_, '_, '_, L, O>,
     ) {
         let mut split = Bits::NONE;
         if !self.dispersion.is_idle() {
-            split = self.spawn_split(lanes, boundary, surfaces, shading);
+            split = self.spawn_split(lanes, boundary, shading);
         }
         let together = lanes.without(split);
         if together.any() {
@@ -249,7 +260,6 @@ impl Whitted {
         &self,
         lanes: Bits,
         boundary: &Boundary<'_, L>,
-        surfaces: &SurfaceRows,
         shading: &mut Shading<'_, '_, '_, L, O>,
     ) -> Bits {
         let (mut wo, mut normal) = ([[0.0; WIDTH]; 3], [[0.0; WIDTH]; 3]);
@@ -258,7 +268,7 @@ impl Whitted {
         let (mut reflect, mut transmit) = ([[0.0; WIDTH]; 3], [[0.0; WIDTH]; 3]);
         boundary.reflect.store(&mut reflect, 0);
         boundary.transmit.store(&mut transmit, 0);
-        let (scene, rays) = (shading.scene, shading.rays);
+        let Shading { scene, rays, surfaces, .. } = *shading;
         let mut split = Bits::NONE;
         for lane in lanes.lanes() {
             let notes = &rays.rows.notes[rays.at + lane];
@@ -273,7 +283,7 @@ impl Whitted {
             };
             split |= Bits::lane(lane);
             let surface = LaneSurface::<f64>::load(surfaces, rays.at + lane);
-            let mut alone = Shading { scene, rays: rays.only(lane), surface, wo, out: &mut *shading.out };
+            let mut alone = Shading { scene, rays: rays.only(lane), surfaces, surface, wo, out: &mut *shading.out };
             let boundary = Boundary {
                 crossings: &[crossing; WIDTH],
                 normal,
@@ -303,7 +313,7 @@ impl Whitted {
         weight: LaneColor<L::Floats>,
         shading: &mut Shading<'_, '_, '_, L, O>,
     ) -> LaneColor<L::Floats> {
-        let Shading { rays, surface, wo, .. } = *shading;
+        let Shading { rays, surfaces, surface, wo, .. } = *shading;
         let (mut before, mut beyond, mut after) = ([1.0; WIDTH], [1.0; WIDTH], [MediumStack::EMPTY; WIDTH]);
         for lane in lanes.lanes() {
             let crossing = &boundary.crossings[lane];
@@ -338,7 +348,8 @@ impl Whitted {
                 direction = direction.or_where_not(through, by_flat.or_where_not(refracts, -wo));
             }
             let (kind, origin, media) = (RayKind::Refracted, surface.spawn_origin(direction), Some(&after));
-            shading.out.spawn(&rays, followed, &Spawn { kind, origin, direction, throughput, media, band });
+            let spawn = Spawn { kind, origin, direction, throughput, media, band, surfaces, eta };
+            shading.out.spawn(&rays, followed, &spawn);
         }
         reflect_share
     }
@@ -402,7 +413,9 @@ fn lobes<L: Lanes>(
         }
         _ => LaneBsdf::gather(met.lanes().map(|lane| {
             let interaction = scene.geometry.interaction_of(hits, surfaces, at + lane);
-            (lane, material.bsdf(&scene.textures, &interaction))
+            let footprint =
+                if scene.sees_pictures() { &surfaces.around[at + lane].footprint } else { &Footprint::SHARP };
+            (lane, material.bsdf(&scene.textures, &interaction, footprint))
         })),
     }
 }
@@ -535,7 +548,7 @@ impl<L: Lanes, O: Observer> Shading<'_, '_, '_, L, O> {
         if lanes.is_empty() {
             return;
         }
-        let Self { rays, surface, wo, .. } = *self;
+        let Self { rays, surfaces, surface, wo, .. } = *self;
         let (followed, throughput) = self.out.follow::<L>(&rays, RayKind::Reflected, lanes, weight);
         if followed.any() {
             let mut direction = reflect_lanes(wo, surface.consistent_normal(wo));
@@ -546,7 +559,9 @@ impl<L: Lanes, O: Observer> Shading<'_, '_, '_, L, O> {
                 direction = direction.or_where_not(back, reflect_lanes(wo, flat));
             }
             let (kind, origin) = (RayKind::Reflected, surface.spawn_origin(direction));
-            self.out.spawn(&rays, followed, &Spawn { kind, origin, direction, throughput, media: None, band: None });
+            let (media, band, eta) = (None, None, L::splat(1.0));
+            let spawn = Spawn { kind, origin, direction, throughput, media, band, surfaces, eta };
+            self.out.spawn(&rays, followed, &spawn);
         }
     }
 }

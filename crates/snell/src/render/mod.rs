@@ -27,6 +27,7 @@ pub use watch::{Watch, explain, explain_path};
 
 use crate::camera::Camera;
 use crate::compile::CompiledScene;
+use crate::differential::RayDifferential;
 use crate::film::PixelSum;
 use crate::geometry::Hit;
 use crate::integrator::{Integrator, Rules};
@@ -143,12 +144,20 @@ struct Samples {
     first: u32,
     /// Where in the pixel they are.
     places: Vec<[f64; 2]>,
+    /// How far apart, in pixels: the side of the square that each stands for.
+    spacing: f64,
 }
 
 impl Samples {
     fn new(numbers: std::ops::Range<u32>) -> Self {
-        Self { first: numbers.start, places: numbers.map(sampling::pixel_sample).collect() }
+        let spacing = spacing(numbers.end);
+        Self { first: numbers.start, places: numbers.map(sampling::pixel_sample).collect(), spacing }
     }
+}
+
+/// How far apart samples of a pixel are, in pixels, where it has so many.
+fn spacing(samples: u32) -> f64 {
+    1.0 / f64::from(samples.max(1)).sqrt()
 }
 
 /// A pixel of the picture; (0, 0) is the one at the top left.
@@ -201,6 +210,12 @@ impl CameraRays for TileRays<'_> {
         let [origin, direction] = self.camera.generate_rays(L::load(&xs, 0), L::load(&ys, 0));
         origin.store(&mut rows.origin, at);
         direction.store(&mut rows.direction, at);
+    }
+
+    fn differential(&self, number: usize) -> RayDifferential {
+        let Samples { places, spacing, .. } = self.samples;
+        let (Pixel { x, y }, [dx, dy]) = (self.pixels[number / places.len()], places[number % places.len()]);
+        self.camera.ray_differential(f64::from(x) + dx, f64::from(y) + dy, *spacing)
     }
 }
 

@@ -12,9 +12,10 @@ use snell_math::{Ray, Rgb};
 use snell_scene::scene::Shadows;
 
 use super::layers::{FirstHit, FirstHits};
-use super::{Job, MAX_QUEUE, Pixel, Progress, RenderSettings, Rendering, Tile, lock, on_threads};
+use super::{Job, MAX_QUEUE, Pixel, Progress, RenderSettings, Rendering, Tile, lock, on_threads, spacing};
 use crate::camera::Camera;
 use crate::compile::CompiledScene;
+use crate::differential::RayDifferential;
 use crate::film::PixelSum;
 use crate::geometry::Hit;
 use crate::integrator::{Path, PathSample, PhotonPasses, Purpose, Rules};
@@ -47,6 +48,8 @@ impl Default for PathSettings {
 
 /// Pixels darker than this may have the error of this brightness.
 pub const DARK: f64 = 0.05;
+/// More samples than these stand for no smaller part of a pixel each, since how many there will be is not always known.
+const MANY_SAMPLES: u32 = 64;
 /// So many samples are taken before a pixel's error is believed.
 const FIRST_SAMPLES: u32 = 16;
 /// And so many between one look at the errors and the next.
@@ -118,6 +121,8 @@ pub(super) struct PathRays<'a> {
     places: Vec<[f64; 4]>,
     /// The rays themselves, where they come through a lens; else none.
     through_lens: Vec<Ray>,
+    /// How far apart samples are, in pixels.
+    spacing: f64,
 }
 
 impl CameraRays for PathRays<'_> {
@@ -147,6 +152,12 @@ impl CameraRays for PathRays<'_> {
         let [origin, direction] = self.camera.generate_rays(L::load(&xs, 0), L::load(&ys, 0));
         origin.store(&mut rows.origin, at);
         direction.store(&mut rows.direction, at);
+    }
+
+    fn differential(&self, number: usize) -> RayDifferential {
+        // Also behind a lens: rays through one place of it go apart as those through a small hole do.
+        let (Pixel { x, y }, [dx, dy, ..]) = (self.pixels[number], self.places[number]);
+        self.camera.ray_differential(f64::from(x) + dx, f64::from(y) + dy, self.spacing)
     }
 }
 
@@ -238,18 +249,19 @@ impl Job<'_, Path> {
     pub(super) fn begin_paths<'a>(
         &'a self,
         pixels: &'a [Pixel],
-        seed: u32,
+        paths: &PathSettings,
         sample: u32,
         state: &mut Vec<PathSample>,
     ) -> PathRays<'a> {
         state.clear();
-        state.extend(pixels.iter().map(|pixel| self.integrator.begin(seed, [pixel.x, pixel.y], sample)));
+        state.extend(pixels.iter().map(|pixel| self.integrator.begin(paths.seed, [pixel.x, pixel.y], sample)));
         let places: Vec<[f64; 4]> = state.iter().map(|path| path.draw(Purpose::Camera)).collect();
         let through_lens = pixels.iter().zip(&places).zip(state);
         let through_lens = through_lens.filter_map(|((&Pixel { x, y }, &[dx, dy, u, v]), path)| {
             self.integrator.begin_behind_lens([f64::from(x) + dx, f64::from(y) + dy], [u, v], path)
         });
-        PathRays { camera: self.camera, pixels, through_lens: through_lens.collect(), places }
+        let spacing = spacing(paths.samples.min(MANY_SAMPLES));
+        PathRays { camera: self.camera, pixels, through_lens: through_lens.collect(), places, spacing }
     }
 
     /// Takes one sample in some pixels.
@@ -269,7 +281,7 @@ impl Job<'_, Path> {
         let Worker { scratch, pixels, state, first_hits } = worker;
         pixels.clear();
         pixels.extend(portion.iter().map(|estimate| estimate.pixel));
-        let rays = self.begin_paths(pixels, paths.seed, sample, state);
+        let rays = self.begin_paths(pixels, paths, sample, state);
         let wants_layers = self.settings.layers && sample == 0;
         first_hits.clear();
         let mut watch = |_: usize, ray: &Ray, hit: &mut Option<Hit>| {

@@ -101,6 +101,12 @@ impl RenderSettings {
         self.antialiasing == Antialiasing::Adaptive
     }
 
+    /// The pass that takes a sample, or the last one.
+    pub(super) fn pass_of(&self, sample: u32) -> Range<u32> {
+        let passes = self.passes();
+        passes.iter().find(|pass| pass.contains(&sample)).or(passes.last()).cloned().unwrap_or(0..1)
+    }
+
     /// Which samples of the sequence each pass takes; all pixels take part in the first.
     pub(super) fn passes(&self) -> Vec<Range<u32>> {
         let borders: &[u32] = match self.antialiasing {

@@ -1,20 +1,22 @@
 //! One pixel, sample or ray at a time, watched, by the code and the settings that render the picture.
 
 use snell_image::Image;
+use snell_math::lanes::{Lanes, WIDTH};
 use snell_math::{Ray, Rgb, sampling};
 
 use super::adaptive::{self, Display};
 use super::paths::photon_passes;
-use super::{Job, PathSettings, Pixel, RenderSettings, split_place};
+use super::{Job, PathSettings, Pixel, RenderSettings, spacing, split_place};
 use crate::camera::Camera;
 use crate::compile::CompiledScene;
+use crate::differential::RayDifferential;
 use crate::film::PixelSum;
 use crate::geometry::Hit;
 use crate::integrator::{Path, PathSample, PhotonPasses, Purpose, Whitted};
 use crate::observe::{NoObserver, Observer, RayTree};
 use crate::statistics::Statistics;
-use crate::task::Band;
-use crate::trace::Scratch;
+use crate::task::{Band, RayRows};
+use crate::trace::{CameraRays, Scratch};
 use crate::viewing::ViewingError;
 
 /// A picture whose rays can be watched.
@@ -163,9 +165,9 @@ impl<'a> Watch<'a> {
                 let ray = |&(pixel, number): &([u32; 2], u32)| {
                     job.camera_sample(pixel, self.sample_place(pixel, number), number)
                 };
-                let rays: Vec<(Ray, u32)> = samples.iter().map(ray).collect();
+                let rays = WatchedRays { job: &job, samples, rays: samples.iter().map(ray).collect() };
                 let mut to_far = |_: usize, ray: &Ray, hit: &mut Option<Hit>| job.cut_far(ray, hit);
-                job.tracer().trace(rays.as_slice(), scratch, &mut statistics, observer, Some(&mut to_far))
+                job.tracer().trace(&rays, scratch, &mut statistics, observer, Some(&mut to_far))
             }
             Engine::Path(paths) => {
                 let job = self.job(&paths.integrator);
@@ -173,7 +175,7 @@ impl<'a> Watch<'a> {
                 let pixels: Vec<Pixel> = samples.iter().map(|&([x, y], _)| Pixel { x, y }).collect();
                 let number = samples.first().map_or(0, |(_, number)| *number);
                 let mut state = Vec::new();
-                let rays = job.begin_paths(&pixels, paths.settings.seed, number, &mut state);
+                let rays = job.begin_paths(&pixels, &paths.settings, number, &mut state);
                 let mut to_far = |_: usize, ray: &Ray, hit: &mut Option<Hit>| job.cut_far(ray, hit);
                 let tracer = job.path_tracer(&paths.settings);
                 tracer.trace_with(&rays, &mut state, scratch, &mut statistics, observer, Some(&mut to_far))
@@ -254,6 +256,31 @@ impl<'a> Watch<'a> {
 impl PathEngine {
     fn begin(&self, pixel: [u32; 2], number: u32) -> PathSample {
         self.integrator.begin(self.settings.seed, pixel, number)
+    }
+}
+
+/// The camera rays of some samples of the lecture's picture.
+struct WatchedRays<'a> {
+    job: &'a Job<'a, Whitted>,
+    samples: &'a [([u32; 2], u32)],
+    rays: Vec<(Ray, u32)>,
+}
+
+impl CameraRays for WatchedRays<'_> {
+    fn count(&self) -> usize {
+        self.rays.len()
+    }
+
+    #[inline(always)]
+    fn generate<L: Lanes>(&self, first: usize, rows: &mut RayRows, split: &mut [u32; WIDTH], at: usize) {
+        self.rays.as_slice().generate::<L>(first, rows, split, at);
+    }
+
+    fn differential(&self, number: usize) -> RayDifferential {
+        let ([x, y], sample) = self.samples[number];
+        let [dx, dy] = sampling::pixel_sample(sample);
+        let Job { camera, settings, .. } = self.job;
+        camera.ray_differential(f64::from(x) + dx, f64::from(y) + dy, spacing(settings.pass_of(sample).end))
     }
 }
 

@@ -205,6 +205,22 @@ impl TriangleMesh {
         })
     }
 
+    /// Where a point of a triangle's plane is on the triangle, or beside it: its barycentric coordinates, of which some are
+    /// negative there. t is 0. Of a triangle without area it is the middle.
+    ///
+    /// # Panics
+    /// Where there is no such triangle.
+    pub(crate) fn beside(&self, triangle: u32, place: Point3) -> MeshHit {
+        let [a, b, c] = self.triangle(triangle);
+        let (ab, ac, at) = (b - a, c - a, place - a);
+        let normal = ab.cross(ac);
+        let scale = 1.0 / normal.length_squared();
+        let (of_b, of_c) = (at.cross(ac).dot(normal) * scale, ab.cross(at).dot(normal) * scale);
+        let barycentric =
+            if of_b.is_finite() && of_c.is_finite() { [1.0 - of_b - of_c, of_b, of_c] } else { [1.0 / 3.0; 3] };
+        MeshHit { t: 0.0, triangle, barycentric, front: true }
+    }
+
     /// Visits all hits with t_min < t ≤ t_max, in a fixed order that is not that of t, until `visit` breaks; returns
     /// whether it did. What is a hit is the same as for [`TriangleMesh::intersect`].
     #[inline]

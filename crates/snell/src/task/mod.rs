@@ -1,11 +1,13 @@
 //! What travels through the tracing loop: rays to be traced, questions to lights, and the names of what comes of them.
 
+mod differentials;
 mod media;
 mod rows;
 mod sums;
 
 use snell_math::{Ray, Rgb};
 
+pub use differentials::Differentials;
 pub use media::{Crossing, Inside, MediumStack, MediumStacks};
 pub use rows::{QuestionNotes, QuestionQueue, QuestionRows, Queue, RayNotes, RayQueue, RayRows, column, set_column};
 pub use sums::SampleSums;

@@ -9,6 +9,7 @@ use snell_scene::Id;
 use snell_scene::scene::{self, ImageAsset};
 
 use super::image::{Level, Neighbours, TextureImage};
+use super::pyramid;
 use super::ramp::{Ramp, RampError};
 use super::view::ViewProjection;
 
@@ -16,15 +17,29 @@ use super::view::ViewProjection;
 ///
 /// ```
 /// use snell::math::{Rgb, Vector3};
-/// use snell::texture::{Background, ViewProjection};
+/// use snell::texture::{Background, SeenAtOnce, ViewProjection};
 /// let sky = snell::scene::scene::Background::Gradient(vec![(-1.0, Rgb::BLACK), (1.0, Rgb::WHITE)]);
 /// let view = ViewProjection::for_orthographic(Vector3::X, Vector3::Y, Vector3::Z, 1.5);
 /// let background = Background::compile(&sky, &[]).unwrap();
-/// assert_eq!(background.evaluate(Vector3::Y, &view), Rgb::WHITE);
-/// assert_eq!(background.evaluate(Vector3::X, &view), Rgb::gray(0.5));
+/// assert_eq!(background.evaluate(Vector3::Y, &SeenAtOnce::POINT, &view), Rgb::WHITE);
+/// assert_eq!(background.evaluate(Vector3::X, &SeenAtOnce::POINT, &view), Rgb::gray(0.5));
 /// ```
 #[derive(Clone, Debug)]
 pub struct Background(Kind);
+
+/// How much of the background one sample of the picture stands for. Pictures are averaged over it, the rest is not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeenAtOnce {
+    /// The steps from a unit direction to those of the neighbouring samples.
+    pub directions: [Vector3; 2],
+    /// The steps between positions of the picture, where these are known.
+    pub positions: [[f64; 2]; 2],
+}
+
+impl SeenAtOnce {
+    /// A point.
+    pub const POINT: Self = Self { directions: [Vector3::ZERO; 2], positions: [[0.0; 2]; 2] };
+}
 
 #[derive(Clone, Debug)]
 enum Kind {
@@ -117,12 +132,17 @@ impl Background {
 
     /// What is seen in a direction. The view is the camera's, which only a photograph looks at.
     #[must_use]
-    pub fn evaluate(&self, direction: Vector3, view: &ViewProjection) -> Rgb {
+    pub fn evaluate(&self, direction: Vector3, seen: &SeenAtOnce, view: &ViewProjection) -> Rgb {
         match &self.0 {
             Kind::Color(color) => *color,
             Kind::Gradient(ramp) => ramp.color(unit(direction).y()),
-            Kind::Photograph { .. } => self.evaluate_at_pixel(view.position(unit(direction)), direction),
-            Kind::Panorama(panorama) => panorama.color(unit(direction)),
+            Kind::Photograph { .. } => {
+                let direction = unit(direction);
+                let position = view.position(direction);
+                let positions = seen.directions.map(|step| difference(view.position(direction + step), position));
+                self.evaluate_at_pixel(position, direction, &SeenAtOnce { positions, ..*seen })
+            }
+            Kind::Panorama(panorama) => panorama.color(unit(direction), seen.directions),
         }
     }
 
@@ -132,13 +152,19 @@ impl Background {
     /// For an orthographic camera this is how its photograph fills the view; for a perspective one with a point for an eye
     /// both ways agree.
     #[must_use]
-    pub fn evaluate_at_pixel(&self, position: [f64; 2], direction: Vector3) -> Rgb {
+    pub fn evaluate_at_pixel(&self, position: [f64; 2], direction: Vector3, seen: &SeenAtOnce) -> Rgb {
         match &self.0 {
             Kind::Color(color) => *color,
             Kind::Gradient(ramp) => ramp.color(unit(direction).y()),
-            Kind::Photograph { image, intensity } => image.color(position, false, true, 0.0) * *intensity,
-            Kind::Panorama(panorama) => panorama.color(unit(direction)),
+            Kind::Photograph { image, intensity } => image.color(position, false, true, seen.positions) * *intensity,
+            Kind::Panorama(panorama) => panorama.color(unit(direction), seen.directions),
         }
+    }
+
+    /// True where how much is seen at once matters.
+    #[must_use]
+    pub fn is_picture(&self) -> bool {
+        matches!(self.0, Kind::Photograph { .. } | Kind::Panorama(_))
     }
 
     /// The colour of a background that is the same everywhere.
@@ -150,6 +176,10 @@ impl Background {
             _ => None,
         }
     }
+}
+
+fn difference(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] - b[0], a[1] - b[1]]
 }
 
 /// A direction in unit length; straight ahead of the default camera where there is none.
@@ -165,15 +195,31 @@ impl Panorama {
         Self { image, intensity, rotation: turns - turns.floor(), poles }
     }
 
-    /// What is seen in a unit direction.
-    fn color(&self, direction: Vector3) -> Rgb {
+    /// What is seen in a unit direction and as far around it as some steps lead.
+    fn color(&self, direction: Vector3, steps: [Vector3; 2]) -> Rgb {
+        let levels = self.image.levels();
+        let place = self.place(direction);
+        let look = |level: usize, [right, down]: [f64; 2]| levels[level].panorama(right, down, self.poles);
+        if steps == [Vector3::ZERO; 2] {
+            return look(0, place) * self.intensity;
+        }
+        let sides = steps.map(|step| {
+            let [right, down] = difference(self.place(direction + step), place);
+            // The shorter way round.
+            [right - right.round(), down]
+        });
+        pyramid::average_over(levels, place, sides, look) * self.intensity
+    }
+
+    /// Where in the picture a direction is: to the right and down.
+    fn place(&self, direction: Vector3) -> [f64; 2] {
         let [x, y, z] = direction.to_array();
         // The azimuth from −z towards +x, which is to the right in the picture. Turning the picture counter-clockwise moves
         // every direction clockwise in it, that is to the right.
         let right = 0.5 + portable::atan2(x, -z) / TAU + self.rotation;
         // The angle from the top, by both its sine and its cosine: exact at the poles too.
         let down = portable::atan2((x * x + z * z).sqrt(), y) / (0.5 * TAU);
-        self.image.levels()[0].panorama(right, down, self.poles) * self.intensity
+        [right, down]
     }
 }
 

@@ -41,13 +41,20 @@ pub struct Spaces {
     pub world: bool,
     /// Those of the surface.
     pub uv: bool,
+    /// How much of the surface is seen at once.
+    pub footprint: bool,
 }
 
 impl Spaces {
     /// What either looks at.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
-        Self { object: self.object | other.object, world: self.world | other.world, uv: self.uv | other.uv }
+        Self {
+            object: self.object | other.object,
+            world: self.world | other.world,
+            uv: self.uv | other.uv,
+            footprint: self.footprint | other.footprint,
+        }
     }
 }
 
@@ -268,10 +275,11 @@ impl Textures {
         if matches!(self.nodes[id.index()], Node::Constant(_)) {
             return Spaces::default();
         }
+        let footprint = matches!(texture.pattern, Pattern::Image { .. });
         let own = match texture.mapping.space {
-            Space::Object => Spaces { object: true, ..Spaces::default() },
-            Space::World => Spaces { world: true, ..Spaces::default() },
-            Space::Uv => Spaces { uv: true, ..Spaces::default() },
+            Space::Object => Spaces { object: true, footprint, ..Spaces::default() },
+            Space::World => Spaces { world: true, footprint, ..Spaces::default() },
+            Space::Uv => Spaces { uv: true, footprint, ..Spaces::default() },
         };
         parts(&texture.pattern).fold(own, |spaces, part| spaces.union(self.spaces[part.index()]))
     }

@@ -27,22 +27,22 @@ pub struct TextureCoordinates {
     pub footprint: Footprint,
 }
 
-/// The diameter of the part of a surface that one sample of the picture stands for, in units of each space: what ray
-/// differentials give. Pictures are blurred by it; the other patterns are evaluated at the point itself. Zero is sharp;
-/// negative and NaN are taken as zero.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+/// The part of a surface that one sample of the picture stands for, in each space: a parallelogram around the point, by two
+/// of its sides, which are the steps to the neighbouring samples ([`crate::differential`]). Pictures are averaged over it;
+/// the other patterns are evaluated at the point itself. Zero is sharp; NaN is taken as zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Footprint {
-    /// In units of object space.
-    pub object: f32,
-    /// In units of the world.
-    pub world: f32,
-    /// In units of u and v.
-    pub uv: f32,
+    /// In object space.
+    pub object: [Vector3; 2],
+    /// In the world.
+    pub world: [Vector3; 2],
+    /// In u and v.
+    pub uv: [[f64; 2]; 2],
 }
 
 impl Footprint {
     /// Evaluates at the point itself.
-    pub const SHARP: Self = Self { object: 0.0, world: 0.0, uv: 0.0 };
+    pub const SHARP: Self = Self { object: [Vector3::ZERO; 2], world: [Vector3::ZERO; 2], uv: [[0.0; 2]; 2] };
 }
 
 impl TextureCoordinates {

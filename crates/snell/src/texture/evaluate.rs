@@ -72,21 +72,23 @@ impl Textures {
                 Node::Constant(color) => return color,
                 Node::Checker { placement, cells } => {
                     let placement = &self.placements[placement as usize];
-                    index = cells[checker::parity(placement.locate(at).point, placement.is_flat())];
+                    index = cells[checker::parity(placement.locate(at), placement.is_flat())];
                 }
                 Node::Image { placement, image, repeat, smooth } => {
-                    let place = self.placements[placement as usize].locate(at);
+                    let placement = &self.placements[placement as usize];
+                    let point = placement.locate(at);
                     // Texture space has y up, pictures have it down.
-                    let position = [place.point.x(), 1.0 - place.point.y()];
-                    return self.images[image as usize].color(position, repeat, smooth, place.footprint);
+                    let position = [point.x(), 1.0 - point.y()];
+                    let footprint = placement.footprint(at).map(|side| [side.x(), -side.y()]);
+                    return self.images[image as usize].color(position, repeat, smooth, footprint);
                 }
                 Node::Gradient { placement, ramp } => {
-                    let point = self.placements[placement as usize].locate(at).point;
+                    let point = self.placements[placement as usize].locate(at);
                     let placed = &self.ramps[ramp as usize];
                     return placed.ramp.color(point.to_vector().dot(placed.axis));
                 }
                 Node::Noise { placement, kind, first_octave, octaves, colors } => {
-                    let point = self.placements[placement as usize].locate(at).point;
+                    let point = self.placements[placement as usize].locate(at);
                     let octaves = &self.octaves[first_octave as usize..][..octaves as usize];
                     let weight = fractal::value(kind, octaves, point) as f32;
                     // At the ends one part alone counts, and the other need not be evaluated.

@@ -66,7 +66,7 @@ impl TextureImage {
     /// use snell::texture::TextureImage;
     /// let image = TextureImage::new(2, 1, vec![Rgb::BLACK, Rgb::WHITE]).unwrap();
     /// assert_eq!(image.pixel(1, 0), Rgb::WHITE);
-    /// assert_eq!(image.color([0.5, 0.5], false, true, 0.0), Rgb::gray(0.5));
+    /// assert_eq!(image.color([0.5, 0.5], false, true, [[0.0; 2]; 2]), Rgb::gray(0.5));
     /// ```
     pub fn new(width: u32, height: u32, pixels: Vec<Rgb>) -> Result<Self, TextureImageError> {
         if width == 0 || height == 0 {
@@ -83,8 +83,8 @@ impl TextureImage {
         Ok(Self { levels: vec![Level { width, height, pixels }], constant })
     }
 
-    /// With smaller versions of itself, which lookups with a footprint use: a third more memory. Without them a footprint
-    /// changes nothing.
+    /// With smaller versions of itself, which lookups with a footprint use: a third more memory, more only for strips a few
+    /// pixels wide. Without them a footprint changes nothing.
     #[must_use]
     pub fn with_levels(mut self) -> Self {
         self.levels.truncate(1);
@@ -121,15 +121,31 @@ impl TextureImage {
     /// The colour at a position, x to the right and y down, the picture being [0, 1]². NaN and infinity are taken as 0.
     ///
     /// `repeat`: outside are more copies of the picture, else the border's colours. `smooth`: blended between the centres
-    /// of pixels, else the nearest pixel. `footprint`: the diameter of what is to be averaged, in the position's unit: where
-    /// it is larger than a pixel, smaller versions of the picture are blended, smooth or not.
-    pub fn color(&self, position: [f64; 2], repeat: bool, smooth: bool, footprint: f64) -> Rgb {
-        let full = &self.levels[0];
-        let pixels_seen = footprint * f64::from(full.width.max(full.height));
-        if pixels_seen > 1.0 && self.levels.len() > 1 {
-            return pyramid::color(&self.levels, position, repeat, pixels_seen);
+    /// of pixels, else the nearest pixel. `footprint`: the sides of the parallelogram around the position that is to be
+    /// averaged, in the position's unit: where it is longer than a pixel, smaller versions of the picture are blended.
+    ///
+    /// ```
+    /// use snell::math::Rgb;
+    /// use snell::texture::TextureImage;
+    /// // Columns of black and white: grey where two of them are seen at once, and still sharp where two rows are.
+    /// let pixels = (0..64).map(|i| Rgb::gray((i % 2) as f32)).collect();
+    /// let image = TextureImage::new(8, 8, pixels).unwrap().with_levels();
+    /// let seen = |width: f64, height: f64| {
+    ///     image.color([0.5625, 0.5625], true, true, [[width / 8.0, 0.0], [0.0, height / 8.0]])
+    /// };
+    /// assert_eq!(seen(1.0, 1.0), Rgb::BLACK);
+    /// assert_eq!(seen(2.0, 2.0), Rgb::gray(0.5));
+    /// assert_eq!(seen(1.0, 2.0), Rgb::BLACK);
+    /// ```
+    pub fn color(&self, position: [f64; 2], repeat: bool, smooth: bool, footprint: [[f64; 2]; 2]) -> Rgb {
+        if let Some(color) = self.constant {
+            return color;
         }
-        if smooth { full.blended(position, repeat) } else { full.nearest(position, repeat) }
+        let look = |level: usize, position| {
+            let pixels = &self.levels[level];
+            if smooth || level > 0 { pixels.blended(position, repeat) } else { pixels.nearest(position, repeat) }
+        };
+        pyramid::average_over(&self.levels, position, footprint, look)
     }
 }
 

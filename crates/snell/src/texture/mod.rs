@@ -45,7 +45,7 @@ mod view;
 #[cfg(test)]
 mod tests;
 
-pub use background::{Background, BackgroundError};
+pub use background::{Background, BackgroundError, SeenAtOnce};
 pub use compile::{Spaces, TextureError, Textures};
 pub use coordinates::{Footprint, RELATIVE_INSET, TextureCoordinates};
 pub use image::{TextureImage, TextureImageError};

@@ -17,17 +17,6 @@ pub struct Placement {
     pub(super) origin: Point3,
     /// Bounds the largest coordinate of a vector's image by the vector's own largest (the matrix's maximum norm).
     pub(super) growth: f64,
-    /// The length of the longest column: what a footprint grows by (the most it can, where the columns are perpendicular).
-    stretch: f64,
-}
-
-/// A point in texture space.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct TexturePoint {
-    /// The point; finite always.
-    pub point: Point3,
-    /// The diameter of the footprint; zero is sharp.
-    pub footprint: f64,
 }
 
 impl Placement {
@@ -40,7 +29,6 @@ impl Placement {
             columns,
             origin: mapping.texture_from_space.point(Point3::ORIGIN),
             growth: row(0).max(row(1)).max(row(2)),
-            stretch: columns.iter().map(|column| column.length()).fold(0.0, f64::max),
         }
     }
 
@@ -54,18 +42,28 @@ impl Placement {
         self.space == Space::Uv
     }
 
-    /// The point to evaluate a pattern at.
+    /// The point in texture space to evaluate a pattern at; finite always.
     #[inline]
-    pub fn locate(&self, at: &TextureCoordinates) -> TexturePoint {
-        let (point, inside, footprint) = match self.space {
-            Space::Object => (at.object_point, at.object_inside, at.footprint.object),
-            Space::World => (at.world_point, at.world_inside, at.footprint.world),
-            Space::Uv => (Point3::new(at.uv[0], at.uv[1], 0.0), Vector3::ZERO, at.footprint.uv),
+    pub fn locate(&self, at: &TextureCoordinates) -> Point3 {
+        let (point, inside) = match self.space {
+            Space::Object => (at.object_point, at.object_inside),
+            Space::World => (at.world_point, at.world_inside),
+            Space::Uv => (Point3::new(at.uv[0], at.uv[1], 0.0), Vector3::ZERO),
         };
-        let footprint = f64::from(footprint.max(0.0)) * self.stretch;
         let placed = if self.is_identity { point } else { self.origin + self.linear(point.to_vector()) };
         let placed = if self.is_flat() { placed } else { self.inset(point, placed, inside) };
-        TexturePoint { point: if placed.is_finite() { placed } else { Point3::ORIGIN }, footprint }
+        if placed.is_finite() { placed } else { Point3::ORIGIN }
+    }
+
+    /// The sides of the footprint in texture space.
+    #[inline]
+    pub fn footprint(&self, at: &TextureCoordinates) -> [Vector3; 2] {
+        let sides = match self.space {
+            Space::Object => at.footprint.object,
+            Space::World => at.footprint.world,
+            Space::Uv => at.footprint.uv.map(|[u, v]| Vector3::new(u, v, 0.0)),
+        };
+        if self.is_identity { sides } else { sides.map(|side| self.linear(side)) }
     }
 
     #[inline]

@@ -21,13 +21,15 @@ use snell_math::lanes::{Bits, InstructionSet, Lanes, WIDTH, Work, dispatch};
 use snell_math::{Point3, Ray, Rgb};
 
 use crate::compile::CompiledScene;
+use crate::differential::RayDifferential;
 use crate::geometry::{Hit, HitRows, QueryScratch};
 use crate::integrator::{Integrator, QUEUES, Rules, Sink};
 use crate::interaction::SurfaceRows;
 use crate::observe::Observer;
 use crate::statistics::Statistics;
 use crate::task::{
-    MediumStack, MediumStacks, QuestionQueue, RayKind, RayNotes, RayQueue, RayRows, SampleSums, column, set_column,
+    Differentials, MediumStack, MediumStacks, QuestionQueue, RayKind, RayNotes, RayQueue, RayRows, SampleSums, column,
+    set_column,
 };
 
 /// The queues and buffers of one worker, reused from tile to tile so that rays cost no allocation.
@@ -46,6 +48,7 @@ pub struct Scratch {
     media: MediumStacks,
     shadow: shadow::ShadowScratch,
     query: QueryScratch,
+    differentials: Differentials,
 }
 
 /// A scene, an algorithm and its rules: what camera rays are given to.
@@ -143,8 +146,9 @@ impl<C: CameraRays + ?Sized, I: Integrator, O: Observer> Work for Whole<'_, '_, 
             }
             L::stage(Shade(&mut generations));
             L::stage(Answer(&mut generations));
-            let Scratch { current, next, .. } = &mut *generations.scratch;
+            let Scratch { current, next, differentials, .. } = &mut *generations.scratch;
             std::mem::swap(current, next);
+            differentials.advance(generations.next_id);
         }
     }
 }
@@ -153,8 +157,10 @@ impl<I: Integrator, O: Observer> Generations<'_, '_, I, O> {
     /// Makes the camera rays, the first generation, which carry all light.
     #[inline(always)]
     fn begin<L: Lanes>(&mut self, camera_rays: &(impl CameraRays + ?Sized)) {
-        let Scratch { current, media, query, .. } = &mut *self.scratch;
+        let Scratch { current, media, query, differentials, .. } = &mut *self.scratch;
         let scene = self.tracer.scene;
+        let numbers = scene.sees_pictures().then(|| 0..camera_rays.count());
+        differentials.begin(numbers.map(|numbers| numbers.map(|number| camera_rays.differential(number))));
         let mut before: Option<(Point3, MediumStack)> = None;
         let mut first = 0;
         for rows in current[0].rows_mut() {
@@ -220,14 +226,16 @@ impl<I: Integrator, O: Observer> Generations<'_, '_, I, O> {
     #[inline(always)]
     fn shade<L: Lanes>(&mut self) {
         let Tracer { scene, integrator, rules, .. } = *self.tracer;
-        let Scratch { current, next, hits, surfaces, questions, sums, spawned, media, .. } = &mut *self.scratch;
+        let Scratch { current, next, hits, surfaces, questions, sums, spawned, media, differentials, .. } =
+            &mut *self.scratch;
         next.iter_mut().for_each(RayQueue::clear);
         questions.clear();
         spawned.clear();
         spawned.resize(sums.count(), 0);
         let (statistics, observer, state) = (&mut *self.statistics, &mut *self.observer, &mut *self.state);
         let next_id = &mut self.next_id;
-        let mut sink = Sink { sums, questions, next, spawned, media, statistics, observer, rules, next_id };
+        let mut sink =
+            Sink { sums, questions, next, spawned, media, statistics, observer, rules, next_id, differentials };
         let mut hits = hits.iter();
         for (number, queue) in current.iter().enumerate() {
             for ((rays, active), hits) in queue.rows().zip(&mut hits) {
@@ -268,6 +276,11 @@ pub trait CameraRays {
     /// Writes rays from number `first` on to rows from place `at` on, with the numbers of their places to split white light; what
     /// it writes for numbers beyond the count is not looked at, but finite.
     fn generate<L: Lanes>(&self, first: usize, rows: &mut RayRows, split: &mut [u32; WIDTH], at: usize);
+    /// How the neighbours of a ray differ from it. Asked only where pictures are seen.
+    fn differential(&self, number: usize) -> RayDifferential {
+        let _ = number;
+        RayDifferential::NONE
+    }
 }
 
 impl CameraRays for [(Ray, u32)] {

@@ -11,7 +11,7 @@ use snell_scene::scene::{Medium, Shadows};
 
 use crate::compile::CompiledScene;
 use crate::geometry::{Blockers, Geometry, Hit, HitRows, QueryScratch};
-use crate::interaction::{LaneSurface, SurfaceRows};
+use crate::interaction::{LaneSurface, SurfaceRows, Surroundings};
 use crate::observe::{Observer, ShadowStep};
 use crate::optics::{self, fresnel_dielectric_lanes};
 use crate::statistics::Statistics;
@@ -235,7 +235,7 @@ impl Context<'_> {
                 Some(bsdf) => bsdf.interface,
                 None => {
                     let interaction = scene.geometry.interaction_of(met, surfaces, at + lane);
-                    material.bsdf(&scene.textures, &interaction).interface
+                    material.bsdf(&scene.textures, &interaction, &Surroundings::NONE.footprint).interface
                 }
             };
             let (Some(body), Some(interface)) = (&material.body, interface) else {

@@ -11,6 +11,7 @@ mod compile;
 mod determinism;
 mod explain;
 mod films;
+mod footprints;
 mod lens;
 mod lighting;
 mod optics;

@@ -13,6 +13,7 @@ use super::lights::{LightIndex, Lights, chosen, within};
 use super::spectra::{BLACK, Colors, Spectral, Wavelengths, scaled};
 use crate::compile::CompiledScene;
 use crate::light::LightOrigin;
+use crate::texture::SeenAtOnce;
 
 /// Up to so many bodies are aimed at one by one.
 const SINGLE_TARGETS: usize = 16;
@@ -268,7 +269,7 @@ impl Emission {
                 let direction = -to_light;
                 let origin = self.targets.sample_across(direction, target, way);
                 let density = probability * density * self.targets.density_across(origin, direction);
-                let radiance = lights.environment_radiance(colors, wavelengths, scene, to_light);
+                let radiance = lights.environment_radiance(colors, wavelengths, scene, to_light, &SeenAtOnce::POINT);
                 Some(Emitted { origin, direction, power: scaled(radiance, 1.0 / density), density, light })
             }
         }

@@ -8,7 +8,7 @@ use std::f64::consts::{PI, TAU};
 use snell_math::warp::PiecewiseConstantPlane;
 use snell_math::{Vector3, portable};
 
-use crate::texture::{Background, ViewProjection};
+use crate::texture::{Background, SeenAtOnce, ViewProjection};
 
 /// A background that is not black.
 #[derive(Clone, Debug)]
@@ -23,7 +23,7 @@ impl Environment {
         let [width, height] = if background.constant().is_some() { [1, 1] } else { background.detail() };
         // Brightness at the corners of cells and in their middles, so that no cell counts as dark that is bright somewhere.
         let at = |x: f64, y: f64| {
-            let color = background.evaluate(direction([x / width as f64, y / height as f64]), view);
+            let color = background.evaluate(direction([x / width as f64, y / height as f64]), &SeenAtOnce::POINT, view);
             f64::from(color.map(|component| component.max(0.0)).mean())
         };
         let row = |y: f64, offset: f64| -> Vec<f64> { (0..=width).map(|x| at(x as f64 + offset, y)).collect() };

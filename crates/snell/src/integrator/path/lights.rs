@@ -15,7 +15,7 @@ use crate::compile::CompiledScene;
 use crate::geometry::EmittingSurface;
 use crate::interaction::{SolidId, SurfaceInteraction};
 use crate::light::LightOrigin;
-use crate::texture::ViewProjection;
+use crate::texture::{SeenAtOnce, ViewProjection};
 
 /// Up to so many lights are weighed anew at every point; more are chosen by their power.
 const WEIGHED: usize = 32;
@@ -288,23 +288,24 @@ impl Lights {
             }
             LightIndex::Environment => {
                 let (wi, density) = self.environment.as_ref()?.sample(u)?;
-                let radiance = self.environment_radiance(colors, wavelengths, scene, wi);
+                let radiance = self.environment_radiance(colors, wavelengths, scene, wi, &SeenAtOnce::POINT);
                 let light_over_density = Some(scaled(radiance, 1.0 / density));
                 Some(Arriving { light, wi, distance: f64::INFINITY, light_over_density, density: Some(density) })
             }
         }
     }
 
-    /// What of the background is seen in a direction.
+    /// What of the background is seen in a direction and around it.
     pub fn environment_radiance(
         &self,
         colors: &Colors,
         wavelengths: &Wavelengths,
         scene: &CompiledScene,
         direction: Vector3,
+        seen: &SeenAtOnce,
     ) -> Spectral {
         let Some(environment) = &self.environment else { return super::spectra::BLACK };
-        let color: Rgb = scene.background.evaluate(direction, environment.view());
+        let color: Rgb = scene.background.evaluate(direction, seen, environment.view());
         colors.light(color, wavelengths.nm(), wavelengths.white)
     }
 

@@ -229,6 +229,12 @@ impl<'a> Lobes<'a> {
         self.rough.is_some() || !(is_black(self.diffuse) && is_black(self.specular))
     }
 
+    /// The index on the side of `wo` over that beyond, at the hero's wavelength; 1 where there is no smooth boundary.
+    #[inline]
+    pub fn eta(&self) -> f64 {
+        self.eta
+    }
+
     /// The cosine of a direction with the surface as it is, not as it is shaded; negative for one that goes to the other side.
     #[inline]
     pub fn flat_cosine(&self, wi: Vector3) -> f64 {

@@ -18,6 +18,7 @@ use crate::geometry::QueryScratch;
 use crate::integrator::sink::MAX_PASSES;
 use crate::observe::Observer;
 use crate::task::{MediumStack, RayKind, Term};
+use crate::texture::Footprint;
 
 /// What becomes of light on its way through a body.
 pub enum Travelled {
@@ -143,7 +144,7 @@ impl Path {
         step.path.specular = 0;
         let [.., roulette] = step.path.draw(Purpose::Direction);
         let media = step.task.media;
-        step.spawn(RayKind::Scattered, Ray::new(point, wi), media, roulette);
+        step.spawn(RayKind::Scattered, Ray::new(point, wi), media, roulette, None);
     }
 
     /// Asks a light for what it gives, times a value; what bodies leave of it on the way is worked out here.
@@ -191,7 +192,7 @@ impl Path {
             return None;
         }
         let material = &step.scene.materials[interaction.material as usize];
-        let color = material.bsdf(&step.scene.textures, &interaction).emission;
+        let color = material.bsdf(&step.scene.textures, &interaction, &Footprint::SHARP).emission;
         let wavelengths = &step.path.wavelengths;
         let radiance = self.colors.light(color, wavelengths.nm(), wavelengths.white);
         Some(scaled(radiance, 1.0 / arriving.density?))

@@ -29,11 +29,12 @@ use snell_math::lanes::{Bits, Lanes};
 use snell_math::sampler::Sampler;
 use snell_math::{Bounds3, Point3, Ray, Rgb};
 
-use super::{Integrator, Sink, view_of};
+use super::{Integrator, Sink, look_around, seen_at_once, seen_in_directions, view_of};
 use crate::camera::{Camera, Projection, RealLens, Window};
 use crate::compile::CompiledScene;
+use crate::differential::RayDifferential;
 use crate::geometry::{HitRows, WorldSurface};
-use crate::interaction::{SurfaceInteraction, SurfaceRows};
+use crate::interaction::{SurfaceInteraction, SurfaceRows, Surroundings};
 use crate::material::Material;
 use crate::observe::Observer;
 use crate::task::{Crossing, Cut, MediumStack, RayKind, RayRows, RayTask, ShadowQuestion, Term};
@@ -165,6 +166,8 @@ fn targets(scene: &CompiledScene) -> Option<(Targets, bool)> {
 struct Step<'a, 'b, 's, O> {
     scene: &'a CompiledScene,
     task: RayTask,
+    /// What its neighbours meet.
+    around: &'a Surroundings,
     path: &'b mut PathSample,
     /// A path that leaves it here.
     born: Option<PathSample>,
@@ -192,6 +195,7 @@ impl Integrator for Path {
         let met = Bits(hits.met().0 >> at) & active;
         if met.any() {
             scene.geometry.surfaces::<L>((&rays.origin, &rays.direction), at, hits, met, surfaces);
+            look_around(scene, rays, at, met, hits, surfaces, out);
         }
         for lane in active.lanes() {
             let interaction = met.has(lane).then(|| scene.geometry.interaction_of(hits, surfaces, at + lane));
@@ -199,7 +203,8 @@ impl Integrator for Path {
             out.met(&task, interaction.as_ref());
             let next_path = state.len() as u32;
             let path = &mut state[task.split as usize];
-            let mut step = Step { scene, task, path, born: None, next_path, out };
+            let around = if scene.sees_pictures() { &surfaces.around[at + lane] } else { &Surroundings::NONE };
+            let mut step = Step { scene, task, around, path, born: None, next_path, out };
             self.step(&mut step, interaction.as_ref());
             if let Some(born) = step.born {
                 state.push(born);
@@ -229,7 +234,8 @@ impl Path {
         let radiance = if let Some(color) = self.background_of_orthographic(step) {
             self.colors.light(color, step.path.wavelengths.nm(), step.path.wavelengths.white)
         } else {
-            self.lights.environment_radiance(&self.colors, &step.path.wavelengths, step.scene, direction)
+            let seen = seen_in_directions(step.out.differential(step.task.id));
+            self.lights.environment_radiance(&self.colors, &step.path.wavelengths, step.scene, direction, &seen)
         };
         let weight = match step.path.scattered {
             Some(vertex) if step.path.specular == 0 => {
@@ -245,11 +251,13 @@ impl Path {
     }
 
     /// The parallel rays of an orthographic camera see a photograph by where they are, not by where they go.
-    fn background_of_orthographic<O>(&self, step: &Step<'_, '_, '_, O>) -> Option<Rgb> {
+    fn background_of_orthographic<O: Observer>(&self, step: &Step<'_, '_, '_, O>) -> Option<Rgb> {
         let is_parallel = self.camera.projection() == Projection::Orthographic && step.task.kind == RayKind::Camera;
         is_parallel.then(|| {
             let position = self.camera.picture_position(step.task.ray.origin);
-            step.scene.background.evaluate_at_pixel(position, step.task.ray.direction)
+            let differential = step.out.differential(step.task.id).unwrap_or_default();
+            let seen = seen_at_once(&self.camera, &step.task.ray, position, differential);
+            step.scene.background.evaluate_at_pixel(position, step.task.ray.direction, &seen)
         })
     }
 
@@ -270,7 +278,7 @@ impl Path {
                 return;
             }
         };
-        let bsdf = material.bsdf(&step.scene.textures, interaction);
+        let bsdf = material.bsdf(&step.scene.textures, interaction, &step.around.footprint);
         step.tell_surface(&bsdf);
         if !bsdf.emission.is_black() && (!bsdf.one_sided || interaction.is_outward(wo)) {
             self.find_light(step, interaction, bsdf.emission);
@@ -279,7 +287,7 @@ impl Path {
             sides: crossing.map(|Crossing { before, beyond, .. }| [before, beyond]),
             around: step.out.media.current(media),
             is_tinted: interaction.vertex_color.is_some(),
-            film_nm: material.film_thickness(&step.scene.textures, interaction),
+            film_nm: material.film_thickness(&step.scene.textures, interaction, &step.around.footprint),
             nm,
             hero_alone: step.path.wavelengths.is_hero_alone(),
         };
@@ -386,7 +394,8 @@ impl Path {
             self.send_on(step, interaction, (lobes, crossing), &refracted, roulette);
             let Step { scene, next_path, .. } = *step;
             let task = RayTask { split: next_path, ..step.task };
-            let mut second = Step { scene, task, path: &mut other, born: None, next_path, out: &mut *step.out };
+            let mut second =
+                Step { scene, task, around: step.around, path: &mut other, born: None, next_path, out: &mut *step.out };
             self.send_on(&mut second, interaction, (lobes, crossing), &reflected, roulette);
             step.born = Some(other);
             return Some(refracted);
@@ -427,7 +436,16 @@ impl Path {
             _ if scattered.density.is_some() => (RayKind::Scattered, step.task.media),
             _ => (RayKind::Reflected, step.task.media),
         };
-        step.spawn(kind, interaction.spawn_ray(scattered.wi), media, roulette);
+        // What is scattered has no neighbours: its pictures are averaged by samples.
+        let differential = match scattered.density {
+            None if step.scene.sees_pictures() => Some(if scattered.crosses {
+                step.around.differential.refracted(step.task.ray.direction, lobes.eta())
+            } else {
+                step.around.differential.reflected(step.task.ray.direction)
+            }),
+            _ => None,
+        };
+        step.spawn(kind, interaction.spawn_ray(scattered.wi), media, roulette, differential);
     }
 
     /// What lights are called by whose numbers terms are told apart: see [`Term`].
@@ -449,7 +467,14 @@ impl<O: Observer> Step<'_, '_, '_, O> {
     }
 
     /// Sends the path on, unless it ends by depth or by chance.
-    fn spawn(&mut self, kind: RayKind, ray: Ray, media: MediumStack, roulette: f64) {
+    fn spawn(
+        &mut self,
+        kind: RayKind,
+        ray: Ray,
+        media: MediumStack,
+        roulette: f64,
+        differential: Option<RayDifferential>,
+    ) {
         let path = &mut *self.path;
         path.events += 1;
         let wavelengths = &path.wavelengths;
@@ -476,7 +501,7 @@ impl<O: Observer> Step<'_, '_, '_, O> {
             path.throughput = scaled(path.throughput, 1.0 / survival);
         }
         self.note_throughput();
-        self.out.send(&self.task, kind, ray, media);
+        self.out.send(&self.task, kind, ray, media, differential);
     }
 
     /// A question to a light, of a value that it adds if nothing is in the way.

@@ -31,6 +31,7 @@ use crate::geometry::QueryScratch;
 use crate::integrator::sink::MAX_PASSES;
 use crate::interaction::SurfaceInteraction;
 use crate::task::{MediumStack, MediumStacks};
+use crate::texture::Footprint;
 
 /// What of r² is left after k passes is a product of (i + α) / (i + 1).
 const ALPHA: f64 = 2.0 / 3.0;
@@ -193,12 +194,12 @@ impl Pass<'_> {
                 };
             let number = interaction.material;
             let material = &self.scene.materials[number as usize];
-            let bsdf = material.bsdf(&self.scene.textures, &interaction);
+            let bsdf = material.bsdf(&self.scene.textures, &interaction, &Footprint::SHARP);
             let meeting = Meeting {
                 sides: crossing.map(|crossing| [crossing.before, crossing.beyond]),
                 around: buffers.media.current(media),
                 is_tinted: interaction.vertex_color.is_some(),
-                film_nm: material.film_thickness(&self.scene.textures, &interaction),
+                film_nm: material.film_thickness(&self.scene.textures, &interaction, &Footprint::SHARP),
                 nm,
                 hero_alone: photon.wavelengths.is_hero_alone(),
             };

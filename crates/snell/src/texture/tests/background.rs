@@ -9,7 +9,7 @@ use snell_scene::Id;
 use snell_scene::scene;
 
 use super::{NASTY, picture};
-use crate::texture::{Background, BackgroundError, RampError, TextureImage, ViewProjection};
+use crate::texture::{Background, BackgroundError, RampError, SeenAtOnce, TextureImage, ViewProjection};
 
 fn view() -> ViewProjection {
     ViewProjection { u: Vector3::X, v: Vector3::Y, w: Vector3::Z, left: -1.0, right: 1.0, bottom: -0.5, top: 0.5 }
@@ -37,7 +37,7 @@ fn axes_see_the_middles_of_their_sides() {
     // Five columns would put no centre at +x; eight put borders there, so the mean of two neighbours is seen. Odd rows put a
     // centre on the horizon.
     let image = picture(8, 5);
-    let seen = |x: Vector3| panorama(image.clone(), 0.0).evaluate(x, &view());
+    let seen = |x: Vector3| panorama(image.clone(), 0.0).evaluate(x, &SeenAtOnce::POINT, &view());
     let between = |a, b| image.pixel(a, 2).lerp(image.pixel(b, 2), 0.5);
     assert_eq!(seen(Vector3::new(0.0, 0.0, -1.0)), between(3, 4));
     assert_eq!(seen(Vector3::X), between(5, 6));
@@ -52,7 +52,7 @@ fn axes_see_the_middles_of_their_sides() {
 #[test]
 fn quarter_turns_are_counter_clockwise_from_above() {
     let image = picture(8, 5);
-    let seen = |rotation, direction| panorama(image.clone(), rotation).evaluate(direction, &view());
+    let seen = |rotation, direction| panorama(image.clone(), rotation).evaluate(direction, &SeenAtOnce::POINT, &view());
     let ahead = seen(0.0, Vector3::new(0.0, 0.0, -1.0));
     // From above, with −z up on the page and +x to the right, ahead turns to the left.
     let near = |a: Rgb, b: Rgb| (a - b).max_abs() < 1e-5;
@@ -68,11 +68,11 @@ fn the_poles_are_continuous() {
     // All azimuths agree more and more towards a pole, though the rows differ wildly along themselves.
     let panorama = panorama(picture(16, 8), 0.3);
     for (pole, sign) in [(Vector3::Y, 1.0), (-Vector3::Y, -1.0)] {
-        let middle = panorama.evaluate(pole, &view());
+        let middle = panorama.evaluate(pole, &SeenAtOnce::POINT, &view());
         for i in 0..32 {
             let azimuth = TAU * f64::from(i) / 32.0;
             let near = Vector3::new(1e-6 * portable::cos(azimuth), sign, 1e-6 * portable::sin(azimuth));
-            assert!((panorama.evaluate(near, &view()) - middle).max_abs() < 1e-3);
+            assert!((panorama.evaluate(near, &SeenAtOnce::POINT, &view()) - middle).max_abs() < 1e-3);
         }
     }
 }
@@ -86,12 +86,15 @@ fn a_photograph_fills_the_window() {
         let at = Vector3::new(-0.75 + 0.5 * f64::from(x), 0.25 - 0.5 * f64::from(y), -1.0);
         let expected = image.pixel(x, y) * 2.0;
         for scale in [1e-200, 0.1, 1.0, 3.0, 1e200] {
-            assert_eq!(photograph.evaluate(at * scale, &view()), expected, "pixel {x}, {y}");
+            assert_eq!(photograph.evaluate(at * scale, &SeenAtOnce::POINT, &view()), expected, "pixel {x}, {y}");
             // Behind the camera the same is seen, mirrored in z.
-            assert_eq!(photograph.evaluate(Vector3::new(at.x(), at.y(), 1.0) * scale, &view()), expected);
+            assert_eq!(
+                photograph.evaluate(Vector3::new(at.x(), at.y(), 1.0) * scale, &SeenAtOnce::POINT, &view()),
+                expected
+            );
         }
         let position = [(f64::from(x) + 0.5) / 4.0, (f64::from(y) + 0.5) / 2.0];
-        assert_eq!(photograph.evaluate_at_pixel(position, Vector3::X), expected);
+        assert_eq!(photograph.evaluate_at_pixel(position, Vector3::X, &SeenAtOnce::POINT), expected);
     }
     // Outside the window is the nearest border.
     for (direction, corner) in [
@@ -101,7 +104,11 @@ fn a_photograph_fills_the_window() {
         (Vector3::new(-9.0, -9.0, 1.0), (0, 1)),
         (Vector3::new(9.0, -0.25, -1.0), (3, 1)),
     ] {
-        assert_eq!(photograph.evaluate(direction, &view()), image.pixel(corner.0, corner.1) * 2.0, "{direction:?}");
+        assert_eq!(
+            photograph.evaluate(direction, &SeenAtOnce::POINT, &view()),
+            image.pixel(corner.0, corner.1) * 2.0,
+            "{direction:?}"
+        );
     }
 }
 
@@ -136,7 +143,7 @@ fn the_orthographic_stand_in_spans_forty_degrees() {
 fn a_gradient_goes_by_height() {
     let stops = vec![(-1.0, Rgb::BLACK), (0.0, Rgb::gray(0.25)), (0.5, Rgb::WHITE)];
     let sky = Background::compile(&scene::Background::Gradient(stops), &[]).unwrap();
-    let seen = |y: f64| sky.evaluate(Vector3::new((1.0 - y * y).sqrt(), y, 0.0) * 3.0, &view()).r;
+    let seen = |y: f64| sky.evaluate(Vector3::new((1.0 - y * y).sqrt(), y, 0.0) * 3.0, &SeenAtOnce::POINT, &view()).r;
     assert_eq!(seen(-1.0), 0.0);
     assert_eq!(seen(0.0), 0.25);
     assert!((seen(0.25) - 0.625).abs() < 1e-6);
@@ -151,8 +158,8 @@ fn constants_are_known_and_bad_numbers_refused() {
     for same in [scene::Background::Color(gray), scene::Background::Gradient(vec![(0.0, gray), (0.1, gray)])] {
         let compiled = compile(same).unwrap();
         assert_eq!(compiled.constant(), Some(gray));
-        assert_eq!(compiled.evaluate(Vector3::X, &view()), gray);
-        assert_eq!(compiled.evaluate_at_pixel([0.1, 0.2], Vector3::X), gray);
+        assert_eq!(compiled.evaluate(Vector3::X, &SeenAtOnce::POINT, &view()), gray);
+        assert_eq!(compiled.evaluate_at_pixel([0.1, 0.2], Vector3::X, &SeenAtOnce::POINT), gray);
     }
     let photograph = |image, intensity| scene::Background::Photograph { image: Id::from_index(image), intensity };
     let panorama = |rotation| scene::Background::Panorama { image: Id::from_index(0), intensity: 1.0, rotation };
@@ -171,11 +178,11 @@ fn nasty_directions_and_windows_give_finite_colours() {
     for (x, y, z) in directions {
         let direction = Vector3::new(*x, *y, *z);
         for background in &backgrounds {
-            assert!(background.evaluate(direction, &view()).is_finite(), "{direction:?}");
-            assert!(background.evaluate_at_pixel([*x, *y], direction).is_finite());
+            assert!(background.evaluate(direction, &SeenAtOnce::POINT, &view()).is_finite(), "{direction:?}");
+            assert!(background.evaluate_at_pixel([*x, *y], direction, &SeenAtOnce::POINT).is_finite());
         }
         let empty = ViewProjection { left: *x, right: *y, bottom: *z, top: *x, ..view() };
-        assert!(backgrounds[2].evaluate(direction, &empty).is_finite());
+        assert!(backgrounds[2].evaluate(direction, &SeenAtOnce::POINT, &empty).is_finite());
     }
 }
 
@@ -188,7 +195,7 @@ proptest! {
         let image = picture(16, 9);
         let towards = direction((f64::from(x) + 0.5) / 16.0, (f64::from(y) + 0.5) / 9.0);
         let turned = Transform::rotate(Vector3::Y, rotation).vector(towards);
-        let seen = panorama(image.clone(), rotation).evaluate(turned, &view());
+        let seen = panorama(image.clone(), rotation).evaluate(turned, &SeenAtOnce::POINT, &view());
         prop_assert!((seen - image.pixel(x, y)).max_abs() < 1e-4, "{:?} {:?}", seen, image.pixel(x, y));
     }
 
@@ -197,7 +204,7 @@ proptest! {
     fn photograph_both_ways(x in 0.0..1.0f64, y in 0.0..1.0f64) {
         let photograph = photograph(picture(16, 9), 1.0);
         let direction = Vector3::new(-1.0 + 2.0 * x, 0.5 - y, -1.0);
-        let difference = photograph.evaluate(direction, &view()) - photograph.evaluate_at_pixel([x, y], direction);
+        let difference = photograph.evaluate(direction, &SeenAtOnce::POINT, &view()) - photograph.evaluate_at_pixel([x, y], direction, &SeenAtOnce::POINT);
         prop_assert!(difference.max_abs() < 1e-4);
     }
 }

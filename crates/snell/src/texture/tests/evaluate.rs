@@ -126,16 +126,20 @@ fn footprints_grow_with_their_mapping() {
     let plain = b.pattern(Space::World, pattern());
     let scaled = b.mapped(Space::World, Transform::scale(Vector3::new(0.5, 0.5, 0.5)), pattern());
     let textures = b.compile();
-    let seen = |texture, place: f64, footprint: f32| {
-        let footprint = Footprint { world: footprint, ..Footprint::SHARP };
+    let square = |side: f64| [Vector3::X * side, Vector3::Y * side];
+    let seen = |texture, place: f64, footprint: f64| {
+        let footprint = Footprint { world: square(footprint), ..Footprint::SHARP };
         textures.evaluate(texture, &TextureCoordinates { footprint, ..at(place, place, 0.0) })
     };
     // A point and a footprint twice as large are the same under half the scale.
     assert_eq!(seen(plain, 0.2, 0.3), seen(scaled, 0.4, 0.6));
     assert_ne!(seen(plain, 0.2, 0.3), seen(scaled, 0.4, 0.3));
-    assert_eq!(seen(plain, 0.2, f32::NAN), seen(plain, 0.2, 0.0));
+    assert_eq!(seen(plain, 0.2, f64::NAN), seen(plain, 0.2, 0.0));
     // Other spaces have their own.
-    let other = TextureCoordinates { footprint: Footprint { object: 9.0, uv: 9.0, world: 0.0 }, ..at(0.2, 0.2, 0.0) };
+    let other = TextureCoordinates {
+        footprint: Footprint { object: square(9.0), uv: [[9.0; 2]; 2], ..Footprint::SHARP },
+        ..at(0.2, 0.2, 0.0)
+    };
     assert_eq!(textures.evaluate(plain, &other), seen(plain, 0.2, 0.0));
 }
 
@@ -207,7 +211,8 @@ fn nasty_coordinates_give_finite_colours() {
     for (i, (x, y)) in NASTY.iter().flat_map(|x| NASTY.iter().map(move |y| (*x, *y))).enumerate() {
         let z = NASTY[i % NASTY.len()];
         let mut at = TextureCoordinates::new(Point3::new(x, y, z), Normal3::new(y, z, x), x, [y, z], &huge);
-        at.footprint = Footprint { object: x as f32, world: y as f32, uv: z as f32 };
+        let sides = [Vector3::new(x, y, z), Vector3::new(z, x, y)];
+        at.footprint = Footprint { object: sides, world: sides, uv: [[x, y], [z, x]] };
         for id in &ids {
             assert!(textures.evaluate(*id, &at).is_finite(), "{id:?} at {at:?}");
         }

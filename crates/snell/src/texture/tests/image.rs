@@ -6,6 +6,14 @@ use snell_math::Rgb;
 use super::{NASTY, picture};
 use crate::texture::{TextureImage, TextureImageError};
 
+/// The footprint of a point.
+const POINT: [[f64; 2]; 2] = [[0.0; 2]; 2];
+
+/// A square one.
+fn square(side: f64) -> [[f64; 2]; 2] {
+    [[side, 0.0], [0.0, side]]
+}
+
 fn centre(i: u32, size: u32) -> f64 {
     (f64::from(i) + 0.5) / f64::from(size)
 }
@@ -18,10 +26,14 @@ fn centres_are_exact_in_every_copy() {
         for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
             for smooth in [false, true] {
                 let position = [centre(x, width), centre(y, height)];
-                assert_eq!(image.color(position, false, smooth, 0.0), image.pixel(x, y));
+                assert_eq!(image.color(position, false, smooth, POINT), image.pixel(x, y));
                 for copy in [-1000.0, -1.0, 0.0, 1.0, 3.0, 1000.0] {
                     let position = [position[0] + copy, position[1] - copy];
-                    assert_eq!(image.color(position, true, smooth, 0.0), image.pixel(x, y), "{width}x{height} {copy}");
+                    assert_eq!(
+                        image.color(position, true, smooth, POINT),
+                        image.pixel(x, y),
+                        "{width}x{height} {copy}"
+                    );
                 }
             }
         }
@@ -34,7 +46,7 @@ fn blending_is_linear_between_centres() {
     for i in 0..=28 {
         let t = f64::from(i) / 28.0;
         let x = (0.5 + 7.0 * t) / 8.0;
-        let color = image.color([x, centre(2, 4)], false, true, 0.0);
+        let color = image.color([x, centre(2, 4)], false, true, POINT);
         assert!((f64::from(color.r) - 7.0 * t).abs() < 1e-6);
         assert_eq!(color.g, 2.0);
     }
@@ -44,17 +56,17 @@ fn blending_is_linear_between_centres() {
 fn outside_is_the_border_or_a_copy() {
     let image = picture(4, 3);
     for smooth in [false, true] {
-        assert_eq!(image.color([-9.0, -9.0], false, smooth, 0.0), image.pixel(0, 0));
-        assert_eq!(image.color([9.0, 9.0], false, smooth, 0.0), image.pixel(3, 2));
-        assert_eq!(image.color([1.0, 0.0], false, smooth, 0.0), image.pixel(3, 0));
+        assert_eq!(image.color([-9.0, -9.0], false, smooth, POINT), image.pixel(0, 0));
+        assert_eq!(image.color([9.0, 9.0], false, smooth, POINT), image.pixel(3, 2));
+        assert_eq!(image.color([1.0, 0.0], false, smooth, POINT), image.pixel(3, 0));
     }
     // Half-way over the seam, both sides count alike.
     let [a, b] = [image.pixel(3, 1), image.pixel(0, 1)];
     for x in [0.0, 1.0, -1.0, 7.0] {
-        assert_eq!(image.color([x, 0.5], true, true, 0.0), a.lerp(b, 0.5));
+        assert_eq!(image.color([x, 0.5], true, true, POINT), a.lerp(b, 0.5));
     }
     // The twin: a border that is not wrapped shows a seam.
-    assert_ne!(image.color([1.0, 0.5], false, true, 0.0), image.color([0.0, 0.5], false, true, 0.0));
+    assert_ne!(image.color([1.0, 0.5], false, true, POINT), image.color([0.0, 0.5], false, true, POINT));
 }
 
 #[test]
@@ -74,8 +86,8 @@ fn nasty_coordinates_give_finite_colours() {
     let image = picture(5, 3).with_levels();
     for (x, y) in NASTY.iter().flat_map(|x| NASTY.iter().map(move |y| (*x, *y))) {
         for (repeat, smooth) in [(false, false), (false, true), (true, false), (true, true)] {
-            for footprint in NASTY {
-                assert!(image.color([x, y], repeat, smooth, footprint).is_finite());
+            for (footprint, other) in NASTY.into_iter().flat_map(|a| NASTY.iter().map(move |b| (a, b))) {
+                assert!(image.color([x, y], repeat, smooth, [[footprint, *other], [*other, footprint]]).is_finite());
             }
         }
     }
@@ -89,8 +101,8 @@ fn levels_keep_the_mean_and_a_wide_footprint_sees_it() {
         let sum = pixels.fold(Rgb::BLACK, |sum, (x, y)| sum + image.pixel(x, y));
         let mean = sum / (width * height) as f32;
         for position in [[0.0, 0.0], [0.3, 0.9], [-8.0, 77.0]] {
-            for footprint in [1.0, 50.0, 1e30, f64::INFINITY] {
-                let color = image.color(position, true, true, footprint);
+            for footprint in [50.0, 1e30, f64::INFINITY] {
+                let color = image.color(position, true, true, square(footprint));
                 assert!(
                     (color - mean).max_abs() < 1e-5 * (1.0 + mean.max_abs()),
                     "{width}x{height}: {color:?} {mean:?}"
@@ -109,7 +121,7 @@ fn a_footprint_blurs_by_degrees() {
     let sharp = TextureImage::new(64, 1, stripes).unwrap();
     let image = sharp.clone().with_levels();
     let contrast = |image: &TextureImage, pixels: f64| {
-        let color = |x| image.color([centre(x, 64), 0.5], true, true, pixels / 64.0).r;
+        let color = |x| image.color([centre(x, 64), 0.5], true, true, [[pixels / 64.0, 0.0], [0.0, pixels]]).r;
         color(33) - color(32)
     };
     let contrasts: Vec<f32> = (0..=10).map(|i| contrast(&image, 1.0 + f64::from(i) / 10.0)).collect();
@@ -118,6 +130,42 @@ fn a_footprint_blurs_by_degrees() {
     assert!(contrasts.windows(2).all(|pair| pair[1] < pair[0]));
     // Without levels it stays sharp.
     assert_eq!(contrast(&sharp, 2.0), 1.0);
+}
+
+#[test]
+fn levels_cost_a_third() {
+    for (width, height) in [(64, 64), (37, 21), (100, 7)] {
+        let image = picture(width, height).with_levels();
+        let all: usize = image.levels().iter().map(|level| level.pixels.len()).sum();
+        assert!(3 * all <= 4 * (width * height) as usize, "{width}x{height}: {all}");
+    }
+}
+
+#[test]
+fn a_long_footprint_averages_along_itself_alone() {
+    // Stripes along a diagonal, four pixels wide as the axes see them.
+    let stripes = |x: u32, y: u32| Rgb::gray(if (x + y) % 8 < 4 { 0.0 } else { 1.0 });
+    let pixels = (0..64).flat_map(|y| (0..64).map(move |x| stripes(x, y))).collect();
+    let image = TextureImage::new(64, 64, pixels).unwrap().with_levels();
+    let seen = |x: f64, y: f64| image.color([33.5 / 64.0; 2], true, true, [[x / 64.0, y / 64.0], [0.7 / 64.0, 0.0]]).r;
+    let sharp = seen(0.0, 0.0);
+    assert!(sharp == 0.0 || sharp == 1.0, "{sharp}");
+    // Along a stripe, however long, and across the stripes.
+    assert_eq!(seen(8.0, -8.0), sharp);
+    assert!((seen(8.0, 8.0) - 0.5).abs() < 0.1, "{}", seen(8.0, 8.0));
+    // One that is as wide as long averages all.
+    let wide = image.color([0.5; 2], true, true, square(16.0 / 64.0)).r;
+    assert!((wide - 0.5).abs() < 0.1, "{wide}");
+}
+
+#[test]
+fn one_colour_stays_itself_to_the_bit() {
+    let color = Rgb::new(0.1, 0.7, 1.0 / 3.0);
+    let image = TextureImage::new(7, 5, vec![color; 35]).unwrap().with_levels();
+    for (i, side) in NASTY.into_iter().chain([0.01, 0.3, 2.0]).enumerate() {
+        let place = [0.37 * i as f64, 0.11];
+        assert_eq!(image.color(place, true, true, [[side, 0.1], [0.02, side]]), color);
+    }
 }
 
 proptest! {
@@ -136,7 +184,7 @@ proptest! {
                 *sum += weight * f64::from(c);
             }
         }
-        let color = image.color([x, y], true, true, 0.0).to_array();
+        let color = image.color([x, y], true, true, POINT).to_array();
         for (found, expected) in color.iter().zip(sum) {
             prop_assert!((f64::from(*found) - expected).abs() < 1e-5);
         }
