@@ -3,10 +3,10 @@
 use snell_math::{Ray, Vector3};
 
 use super::space::NONE;
-use super::{Geometry, Hit};
+use super::{Geometry, Hit, Primitive};
 use crate::differential::{RayDifferential, SurfaceDifferential};
 use crate::interaction::{SurfaceInteraction, Surroundings};
-use crate::texture::Footprint;
+use crate::texture::{Footprint, Spaces};
 
 /// So large a part of the way to a neighbour is gone: derivatives are differences over short ways.
 const PART: f64 = 1.0 / 64.0;
@@ -32,8 +32,10 @@ impl Geometry {
         if *differential == RayDifferential::NONE || !(right.is_finite() && below.is_finite()) {
             return Surroundings::NONE;
         }
-        let farthest = FARTHEST * (hit.t + interaction.point.max_abs());
-        let sides = arriving.origin.map(|step| self.side(hit, interaction, step, farthest));
+        let sides = self.known_sides(hit, interaction, arriving.origin).unwrap_or_else(|| {
+            let farthest = FARTHEST * (hit.t + interaction.point.max_abs());
+            arriving.origin.map(|step| self.side(hit, interaction, step, farthest))
+        });
         Surroundings {
             differential: SurfaceDifferential {
                 arriving,
@@ -46,6 +48,25 @@ impl Geometry {
                 uv: sides.map(|side| side.uv),
             },
         }
+    }
+
+    /// How spheres and planes change along some steps, which is known, where they stand in the world as they are and no texture
+    /// looks at coordinates of theirs.
+    fn known_sides(&self, hit: &Hit, interaction: &SurfaceInteraction, steps: [Vector3; 2]) -> Option<[Side; 2]> {
+        let Spaces { object, uv, .. } = self.spaces[interaction.material as usize];
+        let primitive = &self.world.primitives[hit.primitive as usize];
+        if hit.inner != NONE || object || uv || self.world.placement(primitive).is_some() {
+            return None;
+        }
+        let curvature = match primitive {
+            Primitive::Sphere(sphere) => {
+                let outward = interaction.shading_normal.as_vector().dot(interaction.point - sphere.center);
+                1.0_f64.copysign(outward) / sphere.radius
+            }
+            Primitive::Plane(_) => 0.0,
+            _ => return None,
+        };
+        Some(steps.map(|step| Side { turn: step * curvature, ..Side::default() }))
     }
 
     /// How the surface changes along a step.

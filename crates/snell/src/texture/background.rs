@@ -203,11 +203,7 @@ impl Panorama {
         if steps == [Vector3::ZERO; 2] {
             return look(0, place) * self.intensity;
         }
-        let sides = steps.map(|step| {
-            let [right, down] = difference(self.place(direction + step), place);
-            // The shorter way round.
-            [right - right.round(), down]
-        });
+        let sides = steps.map(|step| Self::change_of_place(direction, step));
         pyramid::average_over(levels, place, sides, look) * self.intensity
     }
 
@@ -220,6 +216,16 @@ impl Panorama {
         // The angle from the top, by both its sine and its cosine: exact at the poles too.
         let down = portable::atan2((x * x + z * z).sqrt(), y) / (0.5 * TAU);
         [right, down]
+    }
+
+    /// How the place changes by a step from a unit direction: its derivatives. At the poles infinite or no number to the right.
+    fn change_of_place(direction: Vector3, step: Vector3) -> [f64; 2] {
+        let ([x, y, z], [dx, dy, dz]) = (direction.to_array(), step.to_array());
+        let level_squared = x * x + z * z;
+        let level = level_squared.sqrt();
+        let right = (x * dz - z * dx) / level_squared;
+        let down = y * (x * dx + z * dz) / level - level * dy;
+        [right / TAU, down / (0.5 * TAU)]
     }
 }
 
