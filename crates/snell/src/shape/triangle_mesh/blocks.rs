@@ -56,16 +56,23 @@ impl TriangleBlock {
         Self { corners, triangles }
     }
 
-    /// A coordinate of a corner of one triangle.
-    #[inline(always)]
-    pub(super) fn coordinate(&self, lane: usize, corner: usize, axis: usize) -> f32 {
-        self.corners[corner][axis][lane & (WIDTH - 1)]
-    }
-
     /// The corners of one triangle.
     #[inline(always)]
     pub(super) fn corners(&self, lane: usize) -> [[f32; 3]; 3] {
-        self.corners.map(|corner| corner.map(|row| row[lane & (WIDTH - 1)]))
+        self.corners_on([0, 1, 2], lane)
+    }
+
+    /// The same, with their coordinates on some axes, in that order.
+    #[inline(always)]
+    pub(super) fn corners_on(&self, axes: [usize; 3], lane: usize) -> [[f32; 3]; 3] {
+        let ([x, y, z], lane) = (axes, lane & (WIDTH - 1));
+        let [a, b, c] = &self.corners;
+        // No closure, see `BlockRay::sheared`.
+        [
+            [a[x][lane], a[y][lane], a[z][lane]],
+            [b[x][lane], b[y][lane], b[z][lane]],
+            [c[x][lane], c[y][lane], c[z][lane]],
+        ]
     }
 }
 

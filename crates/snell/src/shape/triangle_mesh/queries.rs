@@ -61,6 +61,14 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// Takes one triangle that is surely met.
+    #[inline(always)]
+    fn take_surely(&mut self, block: &TriangleBlock, lane: usize) {
+        if let Some(meeting) = self.space.meet_surely(&block.corners_on(self.space.axes(), lane)) {
+            self.take(block, lane, meeting);
+        }
+    }
+
     /// Takes a meeting for the best where it is.
     #[inline(always)]
     fn take(&mut self, block: &TriangleBlock, lane: usize, meeting: Meeting) {
@@ -79,10 +87,7 @@ impl<'a> Search<'a> {
             let Waiting { low, block, lane } = self.waiting[place];
             if low <= limit {
                 let blocks = self.blocks;
-                let (block, lane) = (&blocks[block as usize], lane as usize);
-                if let Some(meeting) = self.space.meet_surely(|corner, axis| block.coordinate(lane, corner, axis)) {
-                    self.take(block, lane, meeting);
-                }
+                self.take_surely(&blocks[block as usize], lane as usize);
             }
         }
     }
@@ -101,7 +106,8 @@ impl<'a> Search<'a> {
             }
             if low[lane] <= 0.0 {
                 // It may lie in front of the range, and must not shorten it.
-                unsure |= 1 << lane;
+                self.take_surely(block, lane);
+                *limit = limit.min(probe.limit(self.t_max));
                 continue;
             }
             let end = Probe::widened(high[lane]);
@@ -144,7 +150,7 @@ impl<'a> Search<'a> {
         if self.count == 1 && self.best.is_none() {
             let Waiting { block, lane, .. } = self.waiting[0];
             let (block, lane) = (&self.blocks[block as usize], lane as usize);
-            let meeting = self.space.meet_surely(|corner, axis| block.coordinate(lane, corner, axis))?;
+            let meeting = self.space.meet_surely(&block.corners_on(self.space.axes(), lane))?;
             let is_in_range = self.t_min < meeting.t && meeting.t <= self.t_max;
             return is_in_range.then(|| MeshHit::new(number(block.triangles[lane & (WIDTH - 1)]), meeting));
         }
@@ -218,9 +224,15 @@ pub(super) fn is_met_in<F: Eight>(
     if verdict.sure & (F::splat(0.0).lt(verdict.low) & verdict.high.le(surely_before)).mask() != 0 {
         return true;
     }
-    let mut rest = verdict.sure | verdict.unsure;
-    while rest != 0 {
-        let meeting = space.meet(block.corners(take_lane(&mut rest)));
+    let (mut sure, mut unsure) = (verdict.sure, verdict.unsure);
+    while sure != 0 {
+        let meeting = space.meet_surely(&block.corners_on(space.axes(), take_lane(&mut sure)));
+        if meeting.is_some_and(|meeting| t_min < meeting.t && meeting.t <= t_max) {
+            return true;
+        }
+    }
+    while unsure != 0 {
+        let meeting = space.meet(block.corners(take_lane(&mut unsure)));
         if meeting.is_some_and(|meeting| t_min < meeting.t && meeting.t <= t_max) {
             return true;
         }

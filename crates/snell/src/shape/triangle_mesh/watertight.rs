@@ -15,13 +15,14 @@
 //! Space: that of the mesh and the ray, any unit of length; t is the ray parameter. The signs are exact while products of
 //! two sheared coordinates neither overflow nor fall below about 1e-290.
 
-use snell_math::{Point3, Ray};
+use snell_math::Ray;
 use wide::f64x4;
 
 /// A ray with the shear that takes it to the third axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RaySpace {
-    origin: Point3,
+    /// The ray's origin, on the first, second and third axis.
+    origin: [f64; 3],
     /// Which axes of space become the first, second and third; the third is the one the ray is longest on.
     axes: [usize; 3],
     /// The slopes of the ray on the first two axes, at most 1 in magnitude, and the inverse of its third component.
@@ -40,7 +41,7 @@ pub(super) struct Meeting {
 
 impl RaySpace {
     /// What stands in for one where there is none.
-    pub(super) const NOTHING: Self = Self { origin: Point3::ORIGIN, axes: [0, 1, 2], shear: [0.0; 3] };
+    pub(super) const NOTHING: Self = Self { origin: [0.0; 3], axes: [0, 1, 2], shear: [0.0; 3] };
 
     /// `None` where the direction is zero or anything is not finite: such a ray meets nothing.
     #[inline]
@@ -59,7 +60,7 @@ impl RaySpace {
         let (first, second) = [(1, 2), (2, 0), (0, 1)][third];
         let inverse = 1.0 / d[third];
         Some(Self {
-            origin: ray.origin,
+            origin: [o[first], o[second], o[third]],
             axes: [first, second, third],
             shear: [d[first] / d[third], d[second] / d[third], inverse],
         })
@@ -75,9 +76,15 @@ impl RaySpace {
     #[inline(always)]
     fn shear(&self, corner: [f32; 3]) -> [f64; 3] {
         let [first, second, third] = self.axes;
-        let x = f64::from(corner[first]) - self.origin[first];
-        let y = f64::from(corner[second]) - self.origin[second];
-        let z = f64::from(corner[third]) - self.origin[third];
+        self.shear_ordered([corner[first], corner[second], corner[third]])
+    }
+
+    /// The same of a corner whose coordinates are those on the first, second and third axis.
+    #[inline(always)]
+    fn shear_ordered(&self, corner: [f32; 3]) -> [f64; 3] {
+        let x = f64::from(corner[0]) - self.origin[0];
+        let y = f64::from(corner[1]) - self.origin[1];
+        let z = f64::from(corner[2]) - self.origin[2];
         [x - self.shear[0] * z, y - self.shear[1] * z, z]
     }
 
@@ -99,15 +106,13 @@ impl RaySpace {
         self.met(p, q, r)
     }
 
-    /// As [`RaySpace::meet`], for a triangle of which it is known that the line goes through it. `corners` gives the
-    /// coordinate of a corner on an axis.
+    /// As [`RaySpace::meet`], for a triangle of which it is known that the line goes through it. The corners' coordinates are those on
+    /// the first, second and third axis.
     #[inline(always)]
-    pub(super) fn meet_surely(&self, corners: impl Fn(usize, usize) -> f32) -> Option<Meeting> {
-        let [p, q, r] = &[0, 1, 2].map(|corner| {
-            let [x, y, z] = [0, 1, 2].map(|k| f64::from(corners(corner, self.axes[k])) - self.origin[self.axes[k]]);
-            [x - self.shear[0] * z, y - self.shear[1] * z, z]
-        });
-        self.met(p, q, r)
+    pub(super) fn meet_surely(&self, corners: &[[f32; 3]; 3]) -> Option<Meeting> {
+        // No closure, see `BlockRay::sheared`.
+        let (p, q) = (self.shear_ordered(corners[0]), self.shear_ordered(corners[1]));
+        self.met(&p, &q, &self.shear_ordered(corners[2]))
     }
 
     /// Where the line goes through a triangle that it goes through.
