@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use snell::accel::BuildQuality;
 use snell::compile::CompiledScene;
 use snell::render::{PathSettings, RenderSettings, Rendering, render, render_paths, warnings};
 use snell::scene::reader::nff;
@@ -51,7 +52,7 @@ pub fn run(arguments: &RenderArguments, mut watch: Stopwatch) -> Result<u8, Fail
     target.spares(&assets)?;
     let load = watch.lap();
 
-    let compiled = compile(&scene, &mut told)?;
+    let compiled = compile_with(&scene, arguments.quality.into(), &mut told)?;
     let settings = render_settings(arguments, &scene);
     let paths = paths::settings(&arguments.paths, &arguments.picture, &scene, &flags)?;
     let paths = paths.map(|paths| until(paths, arguments));
@@ -147,9 +148,14 @@ pub fn read(arguments: &PictureArguments, place: &Place, assets: &FileAssets) ->
     Ok((scene, told))
 }
 
-/// Compiles, and adds the engine's warnings to those of the reader.
+/// As [`compile_with`], with the usual work for hierarchies.
 pub fn compile(scene: &Scene, told: &mut Diagnostics) -> Result<CompiledScene, Failure> {
-    match CompiledScene::build(scene) {
+    compile_with(scene, BuildQuality::Medium, told)
+}
+
+/// Compiles, and adds the engine's warnings to those of the reader.
+fn compile_with(scene: &Scene, quality: BuildQuality, told: &mut Diagnostics) -> Result<CompiledScene, Failure> {
+    match CompiledScene::with_quality(scene, quality) {
         Ok(mut compiled) => {
             told.list.append(&mut compiled.warnings);
             Ok(compiled)

@@ -1,6 +1,7 @@
 //! How fast rays find triangles, without a picture: million rays per CPU second on one thread, build rate, bytes a triangle.
 //!
 //!     cargo bench -p snell --bench kernels -- [--mesh FILE.ply | --triangles N] [--rays N] [--rounds N] [--ray-files PREFIX]
+//!         [--quality medium|high]
 //!
 //! Without a file the mesh is a bumpy sphere of N triangles; without ray files the mesh is put into a room, so that rays that
 //! bounce go on, and the rays are made by ourselves (see kernels/rays.rs): primary ones of a picture, in tiles; what they scatter
@@ -20,6 +21,7 @@ use std::time::Instant;
 
 use clock::thread_seconds;
 use rays::{Question, RaySet};
+use snell::accel::BuildQuality;
 use snell::math::Ray;
 use snell::shape::triangle_mesh::{MeshHit, TriangleMesh};
 use snell_scene::scene::Mesh;
@@ -31,11 +33,19 @@ struct Options {
     rays: usize,
     rounds: usize,
     ray_files: Option<PathBuf>,
+    quality: BuildQuality,
 }
 
 impl Options {
     fn parse(mut words: impl Iterator<Item = String>) -> Result<Self, String> {
-        let mut options = Self { mesh: None, triangles: 1_000_000, rays: 1 << 20, rounds: 5, ray_files: None };
+        let mut options = Self {
+            mesh: None,
+            triangles: 1_000_000,
+            rays: 1 << 20,
+            rounds: 5,
+            ray_files: None,
+            quality: BuildQuality::Medium,
+        };
         while let Some(word) = words.next() {
             // What `cargo bench` says to every benchmark.
             if word == "--bench" {
@@ -49,6 +59,13 @@ impl Options {
                 "--rays" => options.rays = number()?,
                 "--rounds" => options.rounds = number()?,
                 "--ray-files" => options.ray_files = Some(value.into()),
+                "--quality" => {
+                    options.quality = match value.as_str() {
+                        "medium" => BuildQuality::Medium,
+                        "high" => BuildQuality::High,
+                        _ => return Err(format!("{word} is medium or high, not {value}")),
+                    }
+                }
                 _ => return Err(format!("there is no option {word}")),
             }
         }
@@ -80,9 +97,12 @@ fn run(options: &Options) -> Result<(), String> {
     let count = mesh.triangles.len() as f64;
     println!("triangles {count}");
     for threads in [1, 2] {
-        println!("build_mtriangles_per_second_{threads} {:.3}", build_rate(&mesh, threads, options.rounds.min(3))?);
+        println!(
+            "build_mtriangles_per_second_{threads} {:.3}",
+            build_rate(&mesh, threads, options.rounds.min(3), options.quality)?
+        );
     }
-    let built = TriangleMesh::new(&mesh).map_err(|error| error.to_string())?;
+    let built = TriangleMesh::with_quality(&mesh, options.quality).map_err(|error| error.to_string())?;
     drop(mesh);
     println!("bytes_per_triangle {:.1}", built.bytes() as f64 / count);
     let sets = match &options.ray_files {
@@ -94,12 +114,12 @@ fn run(options: &Options) -> Result<(), String> {
 }
 
 /// Million triangles a second of wall time, with so many threads.
-fn build_rate(mesh: &Mesh, threads: usize, rounds: usize) -> Result<f64, String> {
+fn build_rate(mesh: &Mesh, threads: usize, rounds: usize, quality: BuildQuality) -> Result<f64, String> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| error.to_string())?;
     let mut rates = Vec::new();
     for _ in 0..rounds {
         let start = Instant::now();
-        let built = pool.install(|| TriangleMesh::new(mesh)).map_err(|error| error.to_string())?;
+        let built = pool.install(|| TriangleMesh::with_quality(mesh, quality)).map_err(|error| error.to_string())?;
         rates.push(built.triangle_count() as f64 / start.elapsed().as_secs_f64() * 1e-6);
     }
     Ok(median(&mut rates))

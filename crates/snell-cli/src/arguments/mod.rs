@@ -11,6 +11,7 @@ use std::path::PathBuf;
 use clap::builder::RangedU64ValueParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use snell::accel::BuildQuality;
 use snell::scene::scene::{Shadows, Tone};
 
 pub use drawing::{DrawArguments, HiddenName, StrokeName, ViewArguments, ViewFormat};
@@ -134,6 +135,11 @@ pub struct RenderArguments {
     #[arg(help_heading = "Rendering")]
     pub threads: Option<usize>,
 
+    /// Work for hierarchies; `high` builds longer, for rays that are a little faster
+    #[arg(long, value_name = "medium|high", default_value = "medium", hide_default_value = true)]
+    #[arg(hide_possible_values = true, help_heading = "Rendering")]
+    pub quality: QualityName,
+
     /// Edge of the squares that threads work on
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(1..=65536))]
     #[arg(help_heading = "Rendering")]
@@ -215,6 +221,22 @@ impl From<ShadowsName> for Shadows {
     }
 }
 
+/// Names of `--quality`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum QualityName {
+    Medium,
+    High,
+}
+
+impl From<QualityName> for BuildQuality {
+    fn from(name: QualityName) -> Self {
+        match name {
+            QualityName::Medium => Self::Medium,
+            QualityName::High => Self::High,
+        }
+    }
+}
+
 /// Values of `--bits`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bits {
@@ -266,6 +288,8 @@ mod tests {
         assert_eq!(arguments.bits, Some(Bits::Sixteen));
         assert_eq!(arguments.picture.min_weight, Some(0.0));
         assert_eq!(arguments.picture.shadows.map(Shadows::from), Some(Shadows::None));
+        assert_eq!(BuildQuality::from(render("--quality high").unwrap().quality), BuildQuality::High);
+        assert_eq!(BuildQuality::from(render("").unwrap().quality), BuildQuality::Medium);
         assert_eq!(render("--aa none").unwrap().picture.aa, Some(Antialiasing::None));
     }
 
@@ -287,6 +311,7 @@ mod tests {
             "--json --preview",
             "--shadows soft",
             "--wavelength 5",
+            "--quality low",
         ] {
             assert!(render(line).is_err(), "{line}");
         }

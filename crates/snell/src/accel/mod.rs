@@ -9,5 +9,5 @@ pub mod bvh;
 pub(crate) mod random;
 pub mod wide;
 
-pub use bvh::{BuildError, BuildOptions, Bvh, Defect, Statistics};
+pub use bvh::{BuildError, BuildOptions, BuildQuality, Bvh, Defect, Statistics};
 pub use wide::{Candidate, WideBvh, WideDefect};

@@ -18,6 +18,7 @@ use snell_scene::{Diagnostic, Severity, Span};
 pub use names::ObjectNames;
 pub use overlap::overlapping_bodies;
 
+use crate::accel::BuildQuality;
 use crate::differential::RayDifferential;
 use crate::geometry::{Geometry, Hit, QueryScratch};
 use crate::interaction::{SurfaceInteraction, Surroundings};
@@ -107,6 +108,15 @@ impl CompiledScene {
     /// [`CompileError`] with everything that is wrong: pictures that cannot be decoded, textures that refer to themselves,
     /// more primitives than can be counted.
     pub fn build(scene: &Scene) -> Result<Self, CompileError> {
+        Self::with_quality(scene, BuildQuality::Medium)
+    }
+
+    /// As [`CompiledScene::build`], with more or less work for the hierarchies: no picture depends on it, only how long building
+    /// and rendering take.
+    ///
+    /// # Errors
+    /// As [`CompiledScene::build`].
+    pub fn with_quality(scene: &Scene, quality: BuildQuality) -> Result<Self, CompileError> {
         let mut diagnostics = Vec::new();
         let images = images::decode_all(&scene.images, &mut diagnostics);
         if !diagnostics.is_empty() {
@@ -123,7 +133,7 @@ impl CompiledScene {
             scene.materials.iter().map(|material| Material::new(material, &textures)).collect();
         materials.push(Material::unspecified());
         let Some(objects::Compiled { geometry, names: object_names, body_spans }) =
-            objects::compile(scene, &materials, &textures, &mut diagnostics)
+            objects::compile(scene, &materials, &textures, quality, &mut diagnostics)
         else {
             return Err(CompileError { diagnostics });
         };

@@ -10,7 +10,7 @@ use snell_scene::{Diagnostic, Id, Span};
 
 use super::count::Plan;
 use super::names::ObjectNames;
-use crate::accel::BuildError;
+use crate::accel::{BuildError, BuildQuality};
 use crate::csg::{CsgNode, CsgSolid};
 use crate::geometry::{Attributes, Geometry, NONE, ObjectSpace, Placement, Primitive, Space};
 use crate::material::Material;
@@ -34,11 +34,13 @@ pub fn compile(
     scene: &Scene,
     materials: &[Material],
     textures: &Textures,
+    quality: BuildQuality,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Option<Compiled> {
     let plan = Plan::new(scene).map_err(|error| diagnostics.push(*error)).ok()?;
     let descriptions: Vec<&scene::Mesh> = scene.meshes.iter().collect();
-    let compiled: Vec<Result<TriangleMesh, _>> = descriptions.par_iter().map(|mesh| TriangleMesh::new(mesh)).collect();
+    let compiled: Vec<Result<TriangleMesh, _>> =
+        descriptions.par_iter().map(|mesh| TriangleMesh::with_quality(mesh, quality)).collect();
     let mut meshes = Vec::with_capacity(compiled.len());
     for (compiled, mesh) in compiled.into_iter().zip(scene.meshes.iter()) {
         match compiled {
@@ -58,6 +60,7 @@ pub fn compile(
         meshes: &meshes,
         transparent: &transparent,
         spaces: &spaces,
+        quality,
         prototypes: Vec::new(),
         places: Vec::with_capacity(scene.prototypes.len()),
         solids: Vec::new(),
@@ -99,6 +102,7 @@ struct Compiler<'a> {
     transparent: &'a [bool],
     /// For each material, which coordinates of a hit it looks at.
     spaces: &'a [Spaces],
+    quality: BuildQuality,
     /// Those that are shared.
     prototypes: Vec<Space>,
     /// For each prototype of the scene its place among the shared ones, or [`NONE`].
@@ -147,7 +151,7 @@ impl Compiler<'_> {
         if self.failed {
             return None;
         }
-        let space = parts.finish();
+        let space = parts.finish(self.quality);
         space.map_err(|error| self.fail(Diagnostic::error(error.to_string()))).ok()
     }
 
@@ -428,13 +432,13 @@ impl Parts {
         self.object_spaces.len() as u32 - 1
     }
 
-    fn finish(mut self) -> Result<Space, BuildError> {
+    fn finish(mut self, quality: BuildQuality) -> Result<Space, BuildError> {
         for (primitive, attributes) in self.unbounded {
             self.primitives.push(primitive);
             self.attributes.push(attributes);
         }
         let Self { primitives, attributes, bounds, shapes, placements, object_spaces, .. } = self;
-        Space::new(primitives, attributes, bounds, shapes, placements, object_spaces)
+        Space::new(primitives, attributes, bounds, shapes, placements, object_spaces, quality)
     }
 }
 

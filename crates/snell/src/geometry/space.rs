@@ -4,7 +4,7 @@ use snell_math::{Bounds3, Normal3, Point3, Ray, Vector3};
 
 use super::placed::Placement;
 use super::{InnerHit, Touching};
-use crate::accel::{BuildError, Candidate, WideBvh};
+use crate::accel::{BuildError, BuildQuality, Candidate, WideBvh};
 use crate::shape::{Plane, Shape, Sphere, SpherePairs, SurfacePoint};
 use crate::texture::RELATIVE_INSET;
 
@@ -112,6 +112,7 @@ impl Space {
         shapes: Vec<Shape>,
         placements: Vec<Placement>,
         object_spaces: Vec<ObjectSpace>,
+        quality: BuildQuality,
     ) -> Result<Self, BuildError> {
         let bounded = bounds.len();
         // All of them, if they all are plain spheres.
@@ -119,7 +120,7 @@ impl Space {
             .iter()
             .map_while(|primitive| if let Primitive::Sphere(sphere) = primitive { Some(*sphere) } else { None })
             .collect();
-        let mut bvh = WideBvh::build(&bounds)?;
+        let mut bvh = WideBvh::with_quality(&bounds, quality)?;
         if spheres.len() == bounded {
             let balls: Vec<(Point3, f64)> = spheres.iter().map(|sphere| (sphere.center, sphere.radius)).collect();
             bvh = bvh.with_balls(&balls);

@@ -25,7 +25,7 @@ use snell_scene::scene::Mesh;
 
 use super::SurfacePoint;
 use crate::accel::wide::{WideTree, roomy};
-use crate::accel::{BuildError, BuildOptions, Bvh};
+use crate::accel::{BuildError, BuildOptions, BuildQuality, Bvh};
 use blocks::TriangleBlock;
 pub use topology::{EdgeFaces, MeshEdge};
 use watertight::{Meeting, RaySpace};
@@ -114,6 +114,14 @@ impl TriangleMesh {
     /// # Errors
     /// Where the mesh breaks the promises of [`Mesh`], or has more than 2³¹ triangles.
     pub fn new(mesh: &Mesh) -> Result<Self, MeshError> {
+        Self::with_quality(mesh, BuildQuality::Medium)
+    }
+
+    /// As [`TriangleMesh::new`], with more or less work for the hierarchy: nothing but speed and memory depends on it.
+    ///
+    /// # Errors
+    /// As [`TriangleMesh::new`].
+    pub fn with_quality(mesh: &Mesh, quality: BuildQuality) -> Result<Self, MeshError> {
         let vertices = mesh.positions.len();
         for (what, found, expected) in [
             ("normals", mesh.normals.len(), vertices),
@@ -133,7 +141,7 @@ impl TriangleMesh {
             return Err(MeshError::NoSuchVertex(triangle));
         }
         let corners = |triangle| corners_of(&mesh.positions, &mesh.triangles, triangle);
-        let options = BuildOptions { block: BLOCK, ..BuildOptions::default() };
+        let options = BuildOptions { block: BLOCK, quality, ..BuildOptions::default() };
         let bvh = Bvh::over_triangles(mesh.triangles.len(), corners, options)?;
         let (tree, leaves) = WideTree::new(&bvh);
         let mut blocks = roomy(leaves.len());

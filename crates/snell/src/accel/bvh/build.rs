@@ -13,6 +13,7 @@ use super::item::{Hull, Item, hulls};
 use super::partition::{partition, partition_many};
 use super::places::Places;
 use super::presplit::presplit;
+use super::reinsert::reinserted;
 use super::split::{CHUNK, Split, best_split, best_split_of_many, median_split};
 use super::subtree::{Part, Subtree};
 use super::{Bvh, MAX_DEPTH, MAX_LEAF, Node};
@@ -46,6 +47,17 @@ pub enum BuildError {
     Changed(u32),
 }
 
+/// How much work goes into a hierarchy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum BuildQuality {
+    /// Built once, by the binned surface area heuristic.
+    #[default]
+    Medium,
+    /// And then improved by taking parts out and putting them in again where they fit better, see
+    /// `bvh/reinsert.rs`. No query has another answer; it has it sooner.
+    High,
+}
+
 /// What the builder should know about how the hierarchy is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BuildOptions {
@@ -54,12 +66,14 @@ pub struct BuildOptions {
     /// Triangles that are large, or long and across the axes, are cut in pieces that may be in several leaves. Rays meet them
     /// sooner, but a hierarchy that is refitted loses that, and more.
     pub presplit: bool,
+    /// How much work goes into it.
+    pub quality: BuildQuality,
 }
 
 impl Default for BuildOptions {
     /// Primitives are tested one by one, and triangles may be cut.
     fn default() -> Self {
-        Self { block: 1, presplit: true }
+        Self { block: 1, presplit: true, quality: BuildQuality::Medium }
     }
 }
 
@@ -70,6 +84,14 @@ impl Bvh {
     /// # Errors
     /// Where a box has a NaN or infinite corner (the first such box is named), or there are more than 2³¹ boxes.
     pub fn build(bounds: &[Bounds3]) -> Result<Self, BuildError> {
+        Self::over_boxes(bounds, BuildOptions::default())
+    }
+
+    /// As [`Bvh::build`], with options; boxes are not cut in pieces.
+    ///
+    /// # Errors
+    /// As [`Bvh::build`].
+    pub fn over_boxes(bounds: &[Bounds3], options: BuildOptions) -> Result<Self, BuildError> {
         if bounds.len() > MAX_PRIMITIVES {
             return Err(BuildError::TooMany(bounds.len()));
         }
@@ -82,7 +104,7 @@ impl Bvh {
         };
         let mut items = bounds.par_iter().enumerate().map(item).collect();
         retain_filled(&mut items);
-        Ok(Self::over_items(items, BuildOptions::default()))
+        Ok(Self::over_items(items, options))
     }
 
     /// Builds a hierarchy over triangles, known from here on by their number, which is less than `count`. One with two
@@ -120,7 +142,12 @@ impl Bvh {
         // Every cut copies a set from the one list to the other.
         let mut scratch: Vec<Item> = items.par_iter().copied().collect();
         let set = Set { items: &mut items, scratch: &mut scratch, bounds, centers };
-        let Subtree { nodes, primitives } = Builder { block }.build(set, 0).gather();
+        let Subtree { mut nodes, primitives } = Builder { block }.build(set, 0).gather();
+        if options.quality == BuildQuality::High
+            && let Some(better) = reinserted(&nodes)
+        {
+            nodes = better;
+        }
         Self { nodes, primitives, extent: bounds.to_box().max_abs(), block, ..Self::default() }
     }
 }

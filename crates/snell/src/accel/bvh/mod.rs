@@ -16,6 +16,7 @@ mod partition;
 mod places;
 mod presplit;
 mod refit;
+mod reinsert;
 mod split;
 mod subtree;
 mod validate;
@@ -23,7 +24,7 @@ mod validate;
 #[cfg(test)]
 pub(in crate::accel) mod tests;
 
-pub use build::{BuildError, BuildOptions};
+pub use build::{BuildError, BuildOptions, BuildQuality};
 pub use validate::Defect;
 
 pub(in crate::accel) use box32::Box32;

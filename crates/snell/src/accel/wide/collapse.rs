@@ -223,7 +223,8 @@ mod tests {
     fn boxes(seed: u64, count: usize) -> Vec<Bounds3> {
         let mut random = Random(seed);
         let mut one = || {
-            let (center, size) = (random.point(), random.number().abs().powi(4));
+            let (center, shrink) = (random.point(), random.number().abs());
+            let size = shrink * shrink * shrink * shrink;
             let half = Vector3::new(0.1 + random.number().abs(), 0.1 + random.number().abs(), 0.1) * size;
             Bounds3::new(center - half, center + half)
         };

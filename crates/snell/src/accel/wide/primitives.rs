@@ -8,7 +8,7 @@ use snell_math::{Bounds3, Point3, Ray};
 use super::balls::{BallBlock, BallRay};
 use super::shared::{NONE, Visited, number};
 use super::{Approach, BoxRay, Probe, WideTree, take_lane};
-use crate::accel::bvh::{BuildError, Bvh};
+use crate::accel::bvh::{BuildError, BuildOptions, BuildQuality, Bvh};
 
 /// What a primitive's test finds: something with a ray parameter. `f64` is the ray parameter alone, `(f64, T)` has
 /// anything the caller wants to keep of the closest hit with it.
@@ -63,7 +63,16 @@ impl WideBvh {
     /// # Errors
     /// Where a box has a NaN or infinite corner (the first such box is named), or there are more than 2³¹ boxes.
     pub fn build(bounds: &[Bounds3]) -> Result<Self, BuildError> {
-        Ok(Self::from_binary(&Bvh::build(bounds)?))
+        Self::with_quality(bounds, BuildQuality::Medium)
+    }
+
+    /// As [`WideBvh::build`], with more or less work for it; nothing but speed depends on that.
+    ///
+    /// # Errors
+    /// As [`WideBvh::build`].
+    pub fn with_quality(bounds: &[Bounds3], quality: BuildQuality) -> Result<Self, BuildError> {
+        let options = BuildOptions { quality, ..BuildOptions::default() };
+        Ok(Self::from_binary(&Bvh::over_boxes(bounds, options)?))
     }
 
     /// The same primitives, eight children a node.

@@ -320,3 +320,30 @@ fn hits_in_other_places_are_told() {
     turned.rotate_right(1);
     assert_eq!(hits, turned);
 }
+
+#[test]
+fn hits_do_not_depend_on_the_hierarchys_quality() {
+    // Long thin triangles that lie across each other, of which reinsertion moves many.
+    let mut random = Random(41);
+    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    for _ in 0..3000 {
+        let (from, along) = (random.vector(), random.vector());
+        let first = positions.len() as u32;
+        positions.extend([from, from + along, from + along * 0.5 + random.vector() * 0.01]);
+        triangles.push([first, first + 1, first + 2]);
+    }
+    let positions = positions.iter().map(|p: &Vector3| p.to_array().map(|x| x as f32)).collect();
+    let mesh = Mesh { positions, triangles, ..Mesh::default() };
+    let [medium, high] = [BuildQuality::Medium, BuildQuality::High]
+        .map(|quality| TriangleMesh::with_quality(&mesh, quality).expect("a good mesh"));
+    assert!(medium.tree != high.tree, "the twin: another tree");
+    let mut met = 0;
+    for _ in 0..3000 {
+        let ray = Ray::new(random.point(), random.vector());
+        let hit = medium.intersect(&ray, 0.0, f64::INFINITY);
+        met += usize::from(hit.is_some());
+        assert_eq!(high.intersect(&ray, 0.0, f64::INFINITY), hit);
+        assert_eq!(high.any(&ray, 0.0, 1.0), medium.any(&ray, 0.0, 1.0));
+    }
+    assert!(met > 1000, "only {met} hits");
+}

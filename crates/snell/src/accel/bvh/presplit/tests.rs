@@ -26,7 +26,7 @@ fn sticks(count: usize, scale: f64, random: &mut Random) -> Vec<Triangle> {
 }
 
 fn build(triangles: &[Triangle], presplit: bool) -> Bvh {
-    let options = BuildOptions { block: 8, presplit };
+    let options = BuildOptions { block: 8, presplit, ..BuildOptions::default() };
     Bvh::over_triangles(triangles.len(), |i| triangles[i as usize], options).expect("not too many")
 }
 
