@@ -97,7 +97,7 @@ const GROUPS: &[Group] = &[
     Group { name: "drawings", summary: "what line drawings cost", usual: false, run: drawings::run },
     Group {
         name: "paths",
-        summary: "the error of path tracing after the same CPU time, against Mitsuba",
+        summary: "the error of path tracing after the same CPU time, against Mitsuba, LuxCore and Cycles",
         usual: false,
         run: paths::run,
     },
