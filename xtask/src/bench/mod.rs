@@ -4,6 +4,7 @@
 //! the process as the operating system counted them, and wall time beside: POV-Ray waits half a second at its start that would
 //! flatter us. Every report is printed and kept as `target/bench/NAME.md`; `--write-docs` puts it into docs/performance.md too.
 
+mod agreement;
 mod antialiasing;
 mod docs;
 mod drawings;
@@ -96,9 +97,15 @@ const GROUPS: &[Group] = &[
     Group { name: "drawings", summary: "what line drawings cost", usual: false, run: drawings::run },
     Group {
         name: "paths",
-        summary: "the error of path tracing after the same CPU time, against Mitsuba",
+        summary: "the error of path tracing after the same CPU time, against Mitsuba, LuxCore and Cycles",
         usual: false,
         run: paths::run,
+    },
+    Group {
+        name: "agreement",
+        summary: "means over regions of converged pictures, against Mitsuba; --bless stores Mitsuba's",
+        usual: false,
+        run: agreement::run,
     },
 ];
 

@@ -6,6 +6,7 @@
 mod files;
 mod stage;
 
+mod agreement;
 mod catalogue;
 mod compile;
 mod determinism;
