@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use snell::image::Image;
 use snell::math::lanes::InstructionSet;
-use snell::math::{Rgb, portable};
+use snell::math::{Rgb, Vector3, portable};
 use snell::render::{NoProgress, PathSettings, RenderSettings, explain_path, render_paths};
 use snell_testkit::must_fail;
 
@@ -76,8 +76,16 @@ fn lights_over_a_floor_give_what_integrals_say() {
         let (x, y) = ((a * a + h * h).sqrt(), (b * b + h * h).sqrt());
         0.5 * (a / x * portable::atan(b / x) + b / y * portable::atan(a / y))
     };
-    let expected = [PI * 4.0 / 25.0, PI * 4.0 / 13.0, corner(2.0, 4.0, 3.0)];
-    for (light, irradiance) in [sphere, disk, rectangle].into_iter().zip(expected) {
+    let polygon = "[[object]]\nmesh = { vertices = [[-1, 2, -1], [2, 3, -1], [1, 4, 3]], faces = [[0, 1, 2]] }\nmaterial = 'lamp'";
+    let sides =
+        [[-1.0, 2.0, -1.0], [2.0, 3.0, -1.0], [1.0, 4.0, 3.0]].map(|[x, y, z]| Vector3::new(x, y, z).normalize());
+    let side = |i: usize| {
+        let (from, to) = (sides[i], sides[(i + 1) % 3]);
+        let normal = from.cross(to);
+        0.5 * portable::atan2(normal.length(), from.dot(to)) * normal.normalize().y()
+    };
+    let expected = [PI * 4.0 / 25.0, PI * 4.0 / 13.0, corner(2.0, 4.0, 3.0), (side(0) + side(1) + side(2)).abs()];
+    for (light, irradiance) in [sphere, disk, rectangle, polygon].into_iter().zip(expected) {
         let (found, error) = mean(&trace(&floor(light), &samples(64)));
         let expected = 3.0 * irradiance * 0.5 / PI;
         assert!(error < 0.01 * expected, "{error}");
