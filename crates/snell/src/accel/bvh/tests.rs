@@ -19,6 +19,11 @@ impl Bvh {
     }
 }
 
+/// Triangles are not cut in pieces.
+fn whole(block: usize) -> BuildOptions {
+    BuildOptions { block, presplit: false, ..BuildOptions::default() }
+}
+
 /// Inputs that hierarchies have fallen over.
 pub(in crate::accel) fn nasty_inputs() -> Vec<(&'static str, Vec<Bounds3>)> {
     let mut random = Random(1);
@@ -118,14 +123,8 @@ fn triangles_give_the_same_tree_from_any_number_of_threads() {
     let triangles = quantised_triangles(100_000, &mut Random(12));
     let build = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        pool.install(|| {
-            Bvh::over_triangles(
-                triangles.len(),
-                |i| triangles[i as usize],
-                BuildOptions { block: 8, presplit: false, quality: BuildQuality::Medium },
-            )
-        })
-        .expect("not too many")
+        pool.install(|| Bvh::over_triangles(triangles.len(), |i| triangles[i as usize], whole(8)))
+            .expect("not too many")
     };
     let one = build(1);
     assert_eq!(one.validate(&boxes_of(&triangles)), Ok(()));
@@ -136,14 +135,8 @@ fn triangles_give_the_same_tree_from_any_number_of_threads() {
 #[test]
 fn blocks_are_filled() {
     let triangles = quantised_triangles(20_000, &mut Random(13));
-    let build = |block| {
-        Bvh::over_triangles(
-            triangles.len(),
-            |i| triangles[i as usize],
-            BuildOptions { block, presplit: false, quality: BuildQuality::Medium },
-        )
-        .expect("not too many")
-    };
+    let build =
+        |block| Bvh::over_triangles(triangles.len(), |i| triangles[i as usize], whole(block)).expect("not too many");
     let [one, four, eight, most] = [1, 4, 8, 100].map(|block| build(block).statistics());
     assert_eq!(eight, most);
     assert!(
@@ -162,12 +155,7 @@ fn triangles_that_cannot_be_met_are_left_out() {
     let good = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, -0.0]];
     let with = |corner: [f32; 3]| [good[0], good[1], corner];
     let triangles = [with([f32::NAN; 3]), good, with(good[1]), with([0.0, f32::INFINITY, 0.0]), with([3.0, 4.0, -5.0])];
-    let bvh = Bvh::over_triangles(
-        5,
-        |i| triangles[i as usize],
-        BuildOptions { block: 8, presplit: false, quality: BuildQuality::Medium },
-    )
-    .expect("not too many");
+    let bvh = Bvh::over_triangles(5, |i| triangles[i as usize], whole(8)).expect("not too many");
     assert_eq!(bvh.primitives, [1, 4]);
     assert_eq!(bvh.bounds(), Bounds3::new(Point3::new(0.0, 0.0, -5.0), Point3::new(3.0, 4.0, 0.0)));
     let none = Bvh::over_triangles(0, |_| good, BuildOptions::default()).expect("not too many");

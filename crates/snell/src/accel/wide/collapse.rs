@@ -29,8 +29,8 @@ struct Leaves<'a> {
 
 /// How many children a wide node takes from the first of two parts of the binary tree.
 struct Cuts {
-    /// For each node three bits for each number of trees from 2 to 8 that its part may become: how many of them are the first child's;
-    /// 0 where one tree fewer costs no more.
+    /// For each node three bits for each number of trees, from 1 to 8, that its part may become at most: how many of them are for the
+    /// first child's part; 0 where it is best left one.
     shares: Vec<u32>,
 }
 
@@ -103,39 +103,38 @@ impl Cuts {
                 costs.push([0.0; WIDTH - 1]);
                 continue;
             };
-            // Of at most so many trees, from 2 to 8, that are not all one.
-            let mut apart = [f64::INFINITY; WIDTH - 1];
-            let mut share = [1_u32; WIDTH - 1];
-            for trees in 2..=WIDTH {
+            // Of so many trees, the second child's part the rest: the least cost, and how many for the first.
+            let apart = |trees: usize| {
+                let mut best = (f64::INFINITY, 1);
                 for of_first in 1..trees {
                     let cost = first[of_first - 1] + second[trees - of_first - 1];
-                    if cost < apart[trees - 2] {
-                        (apart[trees - 2], share[trees - 2]) = (cost, of_first as u32);
+                    if cost < best.0 {
+                        best = (cost, of_first as u32);
                     }
                 }
-            }
-            let mut cost = [node.bounds.half_area() + apart[WIDTH - 2]; WIDTH - 1];
+                best
+            };
+            // A wide node's own children are apart in any case.
+            let (cost_of_children, share_of_children) = apart(WIDTH);
+            let mut cost = [node.bounds.half_area() + cost_of_children; WIDTH - 1];
+            let mut share = 0;
+            shares[place] = share_of_children << (3 * (WIDTH - 1));
             for trees in 2..WIDTH {
-                cost[trees - 1] = cost[trees - 2].min(apart[trees - 2]);
-                if cost[trees - 2] <= apart[trees - 2] {
-                    share[trees - 2] = 0;
+                let (cost_apart, share_apart) = apart(trees);
+                if cost_apart < cost[trees - 2] {
+                    share = share_apart;
                 }
+                cost[trees - 1] = cost[trees - 2].min(cost_apart);
+                shares[place] |= share << (3 * (trees - 1));
             }
-            shares[place] = (0..WIDTH - 1).fold(0, |all, i| all | share[i] << (3 * i));
             costs.push(cost);
         }
         Self { shares }
     }
 
-    /// Of so many trees that a node's part becomes, how many are the first child's; 0 where it becomes one.
-    fn share(&self, node: usize, mut trees: usize) -> usize {
-        loop {
-            let share = self.shares[node] >> (3 * (trees - 2)) & 0b111;
-            if share > 0 || trees == 2 {
-                return share as usize;
-            }
-            trees -= 1;
-        }
+    /// Of so many trees at most that a node's part becomes, how many are for the first child's; 0 where it becomes one.
+    fn share(&self, node: usize, trees: usize) -> usize {
+        (self.shares[node] >> (3 * (trees - 1)) & 0b111) as usize
     }
 }
 
@@ -148,16 +147,13 @@ impl Leaves<'_> {
     /// The children of the wide node that takes a binary node's place, in order of falling surface, and their number.
     fn open(&self, binary: usize) -> ([usize; WIDTH], usize) {
         let (mut children, mut areas, mut count) = ([binary; WIDTH], [0.0; WIDTH], 0);
-        if self.is_leaf(binary) {
-            return (children, 1);
-        }
-        // Parts that become so many trees at most; the root of the node itself has to be opened.
+        // Parts that become so many trees at most.
         let mut pending = [(binary, WIDTH); WIDTH];
         let mut height = 1;
         while height > 0 {
             height -= 1;
             let (part, trees) = pending[height];
-            let share = if trees == 1 || self.is_leaf(part) { 0 } else { self.cuts.share(part, trees) };
+            let share = self.cuts.share(part, trees);
             if share > 0 {
                 let [first, second] = [part + 1, part + self.bvh.nodes[part].link as usize];
                 pending[height] = (second, trees - share);
