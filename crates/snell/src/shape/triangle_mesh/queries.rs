@@ -151,7 +151,7 @@ impl<'a> Search<'a> {
             let Waiting { block, lane, .. } = self.waiting[0];
             let (block, lane) = (&self.blocks[block as usize], lane as usize);
             let meeting = self.space.meet_surely(&block.corners_on(self.space.axes(), lane))?;
-            let is_in_range = self.t_min < meeting.t && meeting.t <= self.t_max;
+            let is_in_range = meeting.is_within(self.t_min, self.t_max);
             return is_in_range.then(|| MeshHit::new(number(block.triangles[lane & (WIDTH - 1)]), meeting));
         }
         self.settle(limit);
@@ -227,13 +227,13 @@ pub(super) fn is_met_in<F: Eight>(
     let (mut sure, mut unsure) = (verdict.sure, verdict.unsure);
     while sure != 0 {
         let meeting = space.meet_surely(&block.corners_on(space.axes(), take_lane(&mut sure)));
-        if meeting.is_some_and(|meeting| t_min < meeting.t && meeting.t <= t_max) {
+        if meeting.is_some_and(|meeting| meeting.is_within(t_min, t_max)) {
             return true;
         }
     }
     while unsure != 0 {
         let meeting = space.meet(block.corners(take_lane(&mut unsure)));
-        if meeting.is_some_and(|meeting| t_min < meeting.t && meeting.t <= t_max) {
+        if meeting.is_some_and(|meeting| meeting.is_within(t_min, t_max)) {
             return true;
         }
     }
@@ -290,7 +290,7 @@ impl<V: FnMut(MeshHit) -> ControlFlow<()>> Once<'_, V> {
     fn decide(&mut self, block: &TriangleBlock, lane: usize) -> ControlFlow<()> {
         match self.space.meet(block.corners(lane)) {
             Some(meeting)
-                if self.t_min < meeting.t && meeting.t <= self.t_max && self.visited.is_new(block.triangles[lane]) =>
+                if meeting.is_within(self.t_min, self.t_max) && self.visited.is_new(block.triangles[lane]) =>
             {
                 (self.visit)(MeshHit::new(number(block.triangles[lane]), meeting))
             }

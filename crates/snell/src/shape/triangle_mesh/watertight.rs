@@ -39,6 +39,14 @@ pub(super) struct Meeting {
     pub(super) front: bool,
 }
 
+impl Meeting {
+    /// Between two ray parameters, the second included.
+    #[inline(always)]
+    pub(super) fn is_within(&self, t_min: f64, t_max: f64) -> bool {
+        t_min < self.t && self.t <= t_max
+    }
+}
+
 impl RaySpace {
     /// What stands in for one where there is none.
     pub(super) const NOTHING: Self = Self { origin: [0.0; 3], axes: [0, 1, 2], shear: [0.0; 3] };
