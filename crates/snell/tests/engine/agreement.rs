@@ -4,7 +4,7 @@
 
 use snell::image::Image;
 use snell::math::Rgb;
-use snell::render::{NoProgress, PathSettings, render_paths};
+use snell::render::PathSettings;
 use snell_testkit::must_fail;
 
 use crate::files::{root, scene_of_text};
@@ -67,7 +67,7 @@ fn ours(subject: &str, change: impl FnOnce(String) -> String) -> Vec<Mean> {
 /// The means over the regions of a picture under a seed.
 fn trace(stage: &Stage, seed: u32) -> Vec<f64> {
     let paths = PathSettings { samples: SAMPLES, depth: 1000, seed, ..PathSettings::default() };
-    regions(&render_paths(&stage.scene, &stage.settings, &paths, &NoProgress).expect("a camera").image)
+    regions(&stage.picture_by_paths(&paths))
 }
 
 /// The mean of all channels over each region.

@@ -3,7 +3,7 @@
 use snell::image::Image;
 use snell::math::Rgb;
 use snell::math::spectrum::{d65, spectrum_to_rgb};
-use snell::render::{NoProgress, PathSettings, render_paths};
+use snell::render::PathSettings;
 use snell::scene::catalogue::{self, Glass};
 use snell_testkit::must_fail;
 
@@ -11,7 +11,7 @@ use crate::stage::Stage;
 
 fn trace(stage: &Stage, samples: u32) -> Image<Rgb> {
     let paths = PathSettings { samples, ..PathSettings::default() };
-    render_paths(&stage.scene, &stage.settings, &paths, &NoProgress).expect("a camera").image
+    stage.picture_by_paths(&paths)
 }
 
 fn ball(ior: &str) -> Stage {

@@ -1,7 +1,7 @@
 //! Films whose thickness differs from place to place: each place is as if its film were that thick everywhere.
 
 use snell::math::Rgb;
-use snell::render::{NoProgress, PathSettings, render_paths};
+use snell::render::PathSettings;
 
 use crate::stage::Stage;
 
@@ -15,7 +15,7 @@ fn rows(material: &str) -> Vec<Vec<Rgb>> {
     );
     let stage = Stage::new(&text).sized(8, 8);
     let paths = PathSettings { samples: 4, ..PathSettings::default() };
-    let image = render_paths(&stage.scene, &stage.settings, &paths, &NoProgress).expect("a camera").image;
+    let image = stage.picture_by_paths(&paths);
     image.pixels().chunks(8).map(<[Rgb]>::to_vec).collect()
 }
 

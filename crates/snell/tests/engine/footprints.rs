@@ -8,7 +8,7 @@ use snell::image::{BitDepth, DisplayImage, Image, PngOptions, ToneCurve, encode_
 use snell::interaction::Surroundings;
 use snell::math::lanes::InstructionSet;
 use snell::math::{Point3, Ray, Rgb, Vector3, portable};
-use snell::render::{NoProgress, PathSettings, render_paths};
+use snell::render::PathSettings;
 use snell::scene::Table;
 use snell::scene::scene::{Antialiasing, ImageAsset};
 use snell_testkit::{TestRng, must_fail};
@@ -238,7 +238,7 @@ fn threads_and_instructions_change_no_bit() {
     };
     let paths = PathSettings { samples: 3, ..PathSettings::default() };
     let pictures = |stage: &Stage| {
-        let traced = render_paths(&stage.scene, &stage.settings, &paths, &NoProgress).expect("a camera").image;
+        let traced = stage.picture_by_paths(&paths);
         (bits(&stage.picture()), bits(&traced))
     };
     (stage.settings.threads, stage.settings.instructions) = (Some(1), InstructionSet::Scalar);

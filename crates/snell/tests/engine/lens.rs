@@ -2,14 +2,14 @@
 
 use snell::image::Image;
 use snell::math::Rgb;
-use snell::render::{NoProgress, PathSettings, render_paths};
+use snell::render::PathSettings;
 use snell_testkit::must_fail;
 
 use crate::stage::Stage;
 
 fn trace(stage: &Stage, samples: u32) -> Image<Rgb> {
     let paths = PathSettings { samples, ..PathSettings::default() };
-    render_paths(&stage.scene, &stage.settings, &paths, &NoProgress).expect("a camera").image
+    stage.picture_by_paths(&paths)
 }
 
 /// A scene with unequal quarters: a lamp in one, a coloured wall, before a camera with some lens.

@@ -10,10 +10,6 @@ use snell_testkit::must_fail;
 
 use crate::stage::Stage;
 
-fn trace(stage: &Stage, paths: &PathSettings) -> Image<Rgb> {
-    render_paths(&stage.scene, &stage.settings, paths, &NoProgress).expect("a camera").image
-}
-
 fn samples(samples: u32) -> PathSettings {
     PathSettings { samples, ..PathSettings::default() }
 }
@@ -86,7 +82,7 @@ fn lights_over_a_floor_give_what_integrals_say() {
     };
     let expected = [PI * 4.0 / 25.0, PI * 4.0 / 13.0, corner(2.0, 4.0, 3.0), (side(0) + side(1) + side(2)).abs()];
     for (light, irradiance) in [sphere, disk, rectangle, polygon].into_iter().zip(expected) {
-        let (found, error) = mean(&trace(&floor(light), &samples(64)));
+        let (found, error) = mean(&floor(light).picture_by_paths(&samples(64)));
         let expected = 3.0 * irradiance * 0.5 / PI;
         assert!(error < 0.01 * expected, "{error}");
         assert_near(found, expected, 4.0 * error + 0.002 * expected);
@@ -101,7 +97,8 @@ fn a_mesh_and_a_rectangle_shine_alike() {
     let mesh = "[[object]]\nmesh = { vertices = [[-1, 3, -2], [1, 3, -2], [1, 3, 2], [-1, 3, 2]], faces = [[0, 1, 2], [0, 2, 3]] }\nmaterial = 'lamp'";
     let rectangle =
         "[[object]]\nrectangle = { corner = [-1, 3, -2], edge_u = [2, 0, 0], edge_v = [0, 0, 4] }\nmaterial = 'lamp'";
-    let [(mesh, first), (rectangle, second)] = [mesh, rectangle].map(|light| mean(&trace(&floor(light), &samples(64))));
+    let [(mesh, first), (rectangle, second)] =
+        [mesh, rectangle].map(|light| mean(&floor(light).picture_by_paths(&samples(64))));
     assert_near(mesh, f64::from(rectangle.g), 4.0 * (first + second) + 0.001);
 }
 
@@ -115,7 +112,7 @@ fn lights_without_extent_are_as_bright_as_the_lectures() {
     ];
     for light in lights {
         let stage = floor(light);
-        let (found, _) = mean(&trace(&stage, &samples(256)));
+        let (found, _) = mean(&stage.picture_by_paths(&samples(256)));
         // What `whitted` shows, less the ambient term, which stands for light that paths find.
         let expected = f64::from(mean(&stage.picture()).0.g) - 0.5;
         assert_near(found, expected, 0.004 * expected);
@@ -193,10 +190,10 @@ fn what_loses_no_light_is_invisible_in_a_white_world() {
              [[object]]\nsphere = { radius = 0.8 }\nmaterial = 'a'",
         ),
     ];
-    let empty = trace(&furnace("[[object]]\nsphere = { radius = 0.001, center = [9, 9, 9] }"), &samples(64));
+    let empty = furnace("[[object]]\nsphere = { radius = 0.001, center = [9, 9, 9] }").picture_by_paths(&samples(64));
     for (name, arrangement) in arrangements {
         let stage = furnace(arrangement);
-        let image = trace(&stage, &PathSettings { depth: 1000, ..samples(64) });
+        let image = stage.picture_by_paths(&PathSettings { depth: 1000, ..samples(64) });
         // The same wavelengths with and without what is in the way: their noise is not the arrangement's.
         let ((found, _), (expected, _)) = (mean(&image), mean(&empty));
         // Where wavelengths part, or are scattered each in its own way, there is noise of colour.
@@ -213,7 +210,7 @@ fn what_loses_no_light_is_invisible_in_a_white_world() {
     let gray = furnace(
         "[material.a]\ndielectric = { ior = 1.5, transmit = 0.95 }\n[[object]]\nsphere = { radius = 1 }\nmaterial = 'a'",
     );
-    let (found, _) = mean(&trace(&gray, &samples(64)));
+    let (found, _) = mean(&gray.picture_by_paths(&samples(64)));
     must_fail("glass that keeps a twentieth", || assert_near(found, 1.0, 3e-3));
 }
 
@@ -222,7 +219,7 @@ fn an_enclosure_shines_by_the_sum_of_all_its_reflections() {
     let text = "[camera]\neye = [0.3, 0.1, 0]\nlook_at = [1, 0, 0]\nfov = 60\n[material.wall]\nemission = 0.2\ndiffuse = 0.6\n\
                 [[object]]\nsphere = { radius = 2 }\nmaterial = 'wall'";
     let stage = Stage::new(text).sized(16, 16);
-    let (found, error) = mean(&trace(&stage, &samples(64)));
+    let (found, error) = mean(&stage.picture_by_paths(&samples(64)));
     assert_near(found, 0.2 / (1.0 - 0.6), 4.0 * error + 0.002);
     must_fail("one reflection only", || assert_near(found, 0.2 * 1.6, 4.0 * error + 0.002));
 }
@@ -257,8 +254,8 @@ fn caustic() -> Stage {
 fn photons_and_paths_agree() {
     // Finer than elsewhere: photons are gathered from disks of some pixels, which blurs what is smaller.
     let stage = caustic().sized(64, 48);
-    let with = trace(&stage, &samples(64));
-    let without = trace(&stage, &PathSettings { photons: false, ..samples(512) });
+    let with = stage.picture_by_paths(&samples(64));
+    let without = stage.picture_by_paths(&PathSettings { photons: false, ..samples(512) });
     let ((with_mean, _), (without_mean, _)) = (mean(&with), mean(&without));
     let tolerance = 0.01 * f64::from(without_mean.g);
     for (a, b) in with_mean.to_array().into_iter().zip(without_mean.to_array()) {
@@ -271,7 +268,7 @@ fn photons_and_paths_agree() {
     let (a, b) = (with.pixels()[at].g, without.pixels()[at].g);
     assert!((a - b).abs() < 0.1 * b, "{a} {b}");
     let half = Stage::new("[[object]]\nsphere = { radius = 1 }\n[background]\ncolor = 1").sized(4, 4);
-    let (other, _) = mean(&trace(&half, &samples(4)));
+    let (other, _) = mean(&half.picture_by_paths(&samples(4)));
     must_fail("another scene", || assert_near(other, f64::from(without_mean.g), tolerance));
 }
 
@@ -301,8 +298,8 @@ fn photons_and_paths_agree_in_a_medium() {
     // Small enough for photons, large enough for paths. Balls that photons are gathered from reach beyond the surface, where there are none:
     // less so the smaller a pixel is.
     let stage = milk("[[object]]\nsphere = { center = [-2, 3, 0], radius = 0.2 }\nmaterial = 'lamp'").sized(160, 120);
-    let with = mean(&trace(&stage, &samples(64))).0;
-    let without = mean(&trace(&stage, &PathSettings { photons: false, ..samples(192) })).0;
+    let with = mean(&stage.picture_by_paths(&samples(64))).0;
+    let without = mean(&stage.picture_by_paths(&PathSettings { photons: false, ..samples(192) })).0;
     let near = |factor: f32| assert!((with.g * factor - without.g).abs() < 0.04 * without.g, "{with:?} {without:?}");
     near(1.0);
     must_fail("a tenth is missing", || near(0.9));
@@ -314,7 +311,7 @@ fn a_point_lights_the_inside_of_milk_as_a_small_ball_does() {
     let point = milk("[[light]]\npoint = { position = [-2, 3, 0], intensity = 4.0, falloff = 'inverse-square' }");
     let ball = milk("[[object]]\nsphere = { center = [-2, 3, 0], radius = 0.05 }\nmaterial = { emission = 1600 }");
     let dark = PathSettings { photons: false, ..samples(16) };
-    let (point_image, ball_image) = (trace(&point, &samples(128)), trace(&ball, &samples(128)));
+    let (point_image, ball_image) = (point.picture_by_paths(&samples(128)), ball.picture_by_paths(&samples(128)));
     // In the ball's middle, where nothing mirrors the light.
     let middle = |image: &Image<Rgb>| {
         let pixels = (8..16).flat_map(|y| (12..20).map(move |x| [x, y]));
@@ -322,14 +319,14 @@ fn a_point_lights_the_inside_of_milk_as_a_small_ball_does() {
     };
     let (found, expected) = (middle(&point_image), middle(&ball_image));
     assert!((found - expected).abs() < 0.03 * expected, "{found} {expected}");
-    assert!(middle(&trace(&point, &dark)) < 1e-9, "no path meets a point");
+    assert!(middle(&point.picture_by_paths(&dark)) < 1e-9, "no path meets a point");
 }
 
 #[test]
 fn no_thread_tile_or_instruction_changes_a_bit() {
     let stage = caustic();
     let paths = samples(3);
-    let expected = trace(&stage, &paths);
+    let expected = stage.picture_by_paths(&paths);
     let mut others = vec![
         RenderSettings { tile_size: 7, ..stage.settings.clone() },
         RenderSettings { threads: Some(1), ..stage.settings.clone() },
@@ -342,7 +339,7 @@ fn no_thread_tile_or_instruction_changes_a_bit() {
         let found = render_paths(&stage.scene, &settings, &paths, &NoProgress).expect("a camera").image;
         assert!(found == expected, "{settings:?}");
     }
-    let seeded = trace(&stage, &PathSettings { seed: 1, ..paths });
+    let seeded = stage.picture_by_paths(&PathSettings { seed: 1, ..paths });
     assert!(seeded != expected, "another seed gives other noise");
 }
 
@@ -350,7 +347,7 @@ fn no_thread_tile_or_instruction_changes_a_bit() {
 fn a_path_is_explained_by_the_shares_of_its_sample() {
     let stage = caustic();
     let paths = samples(1);
-    let image = trace(&stage, &paths);
+    let image = stage.picture_by_paths(&paths);
     let mut with_photons = 0;
     for y in 0..18 {
         for x in 0..24 {
@@ -373,7 +370,7 @@ fn a_target_of_noise_ends_and_is_kept() {
     let pixels = 24 * 18;
     let mean = rendering.statistics.camera_rays / pixels;
     assert!((16..4096).contains(&mean), "{mean} samples in a pixel");
-    let fine = trace(&stage, &PathSettings { seed: 9, ..samples(512) });
+    let fine = stage.picture_by_paths(&PathSettings { seed: 9, ..samples(512) });
     let errors = rendering.image.pixels().iter().zip(fine.pixels());
     let squares: f64 = errors.map(|(a, b)| square(f64::from(a.g - b.g) / f64::from(b.g.max(0.05)))).sum();
     let error = (squares / pixels as f64).sqrt();

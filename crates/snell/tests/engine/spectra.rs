@@ -3,7 +3,7 @@
 use snell::image::Image;
 use snell::math::Rgb;
 use snell::math::spectrum::{MeasuredSpectrum, Spectrum, blackbody_rgb};
-use snell::render::{NoProgress, PathSettings, render_paths};
+use snell::render::PathSettings;
 use snell_testkit::must_fail;
 
 use crate::stage::Stage;
@@ -14,7 +14,7 @@ fn mean(image: &Image<Rgb>) -> Rgb {
 
 fn trace(stage: &Stage) -> Rgb {
     let paths = PathSettings { samples: 256, ..PathSettings::default() };
-    mean(&render_paths(&stage.scene, &stage.settings, &paths, &NoProgress).expect("a camera").image)
+    mean(&stage.picture_by_paths(&paths))
 }
 
 #[track_caller]

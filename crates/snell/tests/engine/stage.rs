@@ -8,7 +8,7 @@ use snell::math::lanes::InstructionSet;
 use snell::math::sampling;
 use snell::math::{Normal3, Point3, Ray, Rgb, Vector3};
 use snell::observe::{RayTree, TracedRay};
-use snell::render::{NoProgress, RenderSettings, Rendering, render};
+use snell::render::{NoProgress, PathSettings, RenderSettings, Rendering, render, render_paths};
 use snell::scene::Scene;
 use snell::scene::scene::Antialiasing;
 use snell::statistics::Statistics;
@@ -55,6 +55,11 @@ impl Stage {
     /// The picture's colours.
     pub fn picture(&self) -> Image<Rgb> {
         self.render().image
+    }
+
+    /// The picture's colours by path tracing.
+    pub fn picture_by_paths(&self, paths: &PathSettings) -> Image<Rgb> {
+        render_paths(&self.scene, &self.settings, paths, &NoProgress).expect("a camera").image
     }
 
     /// Every pixel, from the top left.

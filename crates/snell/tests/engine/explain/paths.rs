@@ -2,7 +2,7 @@
 
 use snell::explain::{End, Explanation, Kind, Property, Subject, TermKind, explain_watched, map};
 use snell::math::{Point3, Ray, Vector3, portable};
-use snell::render::{NoProgress, PathSettings, Watch, render_paths};
+use snell::render::{NoProgress, PathSettings, Watch};
 use snell::scene::scene::Antialiasing;
 use snell::trace::Scratch;
 use snell_testkit::must_fail;
@@ -22,7 +22,7 @@ fn watch<'a>(stage: &'a Stage, paths: &PathSettings) -> Watch<'a> {
 fn terms_add_up(name: &str, change: impl Fn(&mut Explanation)) -> Vec<Explanation> {
     let stage = stage(name, Antialiasing::None);
     let paths = samples(3);
-    let picture = render_paths(&stage.scene, &stage.settings, &paths, &NoProgress).expect("a camera").image;
+    let picture = stage.picture_by_paths(&paths);
     let mut watch = watch(&stage, &paths);
     let mut all = Vec::new();
     // One pixel of each three by three: photons set out anew for each.
