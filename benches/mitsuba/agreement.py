@@ -144,7 +144,6 @@ def subject(name):
     if name == "environment":
         mirror = {"type": "conductor", "material": "none"}
         return PATH, ([1, 2.5, 6], [0, 0.9, 0], 46), {
-            # The middle of a panorama is along -z here, its borders are there.
             # Ours has its middle along -z, Mitsuba its borders.
             "sky": {"type": "envmap", "bitmap": their_panorama(), "to_world": mi.ScalarTransform4f().rotate([0, 1, 0], 180 + 40)},
             "floor": {**rectangle([-3, 0, 3], [6, 0, 0], [0, 0, -6]), "bsdf": diffuse(0.5)},

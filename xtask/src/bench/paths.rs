@@ -40,7 +40,9 @@ const MITSUBA: Peer = Peer {
     packages: "mitsuba numpy",
 };
 
-const OTHERS: [Peer; 2] = [
+/// All, Mitsuba first.
+const PEERS: [Peer; 3] = [
+    MITSUBA,
     Peer {
         folder: "luxcore",
         name: "LuxCore",
@@ -115,7 +117,8 @@ pub fn run(bench: &Bench) -> Result<Section, String> {
         "320 x 240; ours with {SAMPLES} samples in each pixel, one thread.\n\n\
          | renderer | samples | CPU s | RMS error, whole picture | in the caustic |\n|---|---|---|---|---|"
     );
-    if MITSUBA.version().is_none() {
+    let versions = PEERS.each_ref().map(Peer::version);
+    if versions[0].is_none() {
         let _ = writeln!(
             section.text,
             "| Snell | {SAMPLES} | {:.2} | - | - |\n\nMitsuba is not installed (`pip install {}`).",
@@ -140,8 +143,8 @@ pub fn run(bench: &Bench) -> Result<Section, String> {
         "\nSnell takes {:.1} ms for a sample of every pixel, with all that belongs to it.\n",
         1e3 * cost.cpu / f64::from(SAMPLES)
     );
-    for peer in std::iter::once(&MITSUBA).chain(&OTHERS) {
-        let Some(version) = peer.version() else {
+    for (peer, version) in PEERS.iter().zip(versions) {
+        let Some(version) = version else {
             let _ = writeln!(notes, "{} is not installed (`pip install {}`).", peer.name, peer.packages);
             continue;
         };
@@ -176,7 +179,7 @@ mod tests {
 
     #[test]
     fn every_peer_has_its_script() {
-        for peer in std::iter::once(&MITSUBA).chain(&OTHERS) {
+        for peer in &PEERS {
             let script = process::root().join("benches").join(peer.folder).join("caustic.py");
             assert!(script.is_file(), "{}", script.display());
         }
