@@ -34,7 +34,7 @@ const COMMANDS: &[Command] = &[
     Command {
         name: "test",
         usage: "[--long] [--all-output] [FILTER]",
-        summary: "run all tests and documentation examples; --long adds those that take minutes",
+        summary: "run all tests and documentation examples; --long adds those that take minutes, and new cases",
         run: test::run,
     },
     Command {

@@ -5,6 +5,7 @@
 
 use std::io::{BufRead, BufReader};
 use std::process::Stdio;
+use std::time::UNIX_EPOCH;
 
 use crate::Outcome;
 use crate::arguments::Arguments;
@@ -12,6 +13,9 @@ use crate::process;
 
 /// The environment variable through which `snell_testkit` learns that tests of minutes are wanted.
 const LONG_TESTS: &str = "SNELL_LONG_TESTS";
+
+/// The environment variable by which property tests draw their cases. `.cargo/config.toml` sets it, so that runs are the same.
+const SEED: &str = "PROPTEST_RNG_SEED";
 
 /// Runs the command line `cargo xtask test ...`.
 pub fn run(mut arguments: Arguments) -> Outcome {
@@ -49,6 +53,9 @@ pub fn all(options: &Options) -> Result<(Tally, Outcome), String> {
     command.args(&options.filter).stdin(Stdio::null()).stdout(Stdio::piped());
     if options.long {
         command.env(LONG_TESTS, "1");
+        let seed = UNIX_EPOCH.elapsed().map_or(0, |time| time.as_secs());
+        println!("Property tests draw new cases; the same again by `{SEED}={seed} cargo test NAME`.");
+        command.env(SEED, seed.to_string());
     }
     let mut child = command.spawn().map_err(|error| format!("cannot start cargo: {error}"))?;
     let mut tally = Tally::default();

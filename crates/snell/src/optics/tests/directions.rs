@@ -49,7 +49,9 @@ proptest! {
     fn light_goes_back_the_way_it_came((normal, wo) in any_normal_and_wo(), eta in 0.3..1.0f64) {
         let t = refract(wo, normal, eta).expect("into the denser medium always");
         let back = refract(t, -normal, 1.0 / eta).expect("the same way back");
-        prop_assert!((back - wo).length() < 1e-12, "{:e}", (back - wo).length());
+        // A sine's rounding is that of the cosine times their ratio: towards grazing light the way back is that much less certain.
+        let bound = 1e-14 + 2e-14 / normal.dot(wo);
+        prop_assert!((back - wo).length() < bound, "{:e} {bound:e}", (back - wo).length());
     }
 
     #[test]
