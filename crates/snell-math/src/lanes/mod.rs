@@ -2,7 +2,8 @@
 //!
 //! Code that is generic over [`Lanes`] is written once and runs on one number at a time (`f64` itself has one lane) or on eight, by
 //! whichever instructions the machine has: AVX-512, AVX2, or those that every machine has. Every operation here is one that IEEE
-//! 754 rounds correctly, and none is fused with another, so that all ways give the same bits, NaN's aside.
+//! 754 rounds correctly, and none is fused with another, so that all ways give the same bits, NaN's aside. The one exception says so:
+//! [`Eight::multiply_add`].
 //!
 //! Which instructions there are is known only when the program runs. [`dispatch`] asks once, and gives the work a type whose
 //! operations may be used because they are there; nothing else hands out such a type. For the compiler to make one stretch of
@@ -109,6 +110,16 @@ pub trait Lanes:
     /// Times two to the power of whole numbers from −1022 to 1023; with others what comes of it means nothing.
     fn times_power_of_two(self, power: Self) -> Self;
 
+    /// What rounding took from the product of two numbers: a · b − `product`, which has no error where that is at least about 1e-290
+    /// in magnitude; the same bits by all instructions. Dekker, "A Floating-Point Technique for Extending the Available Precision",
+    /// Numerische Mathematik 18, 1971, where there is no fused operation.
+    #[inline(always)]
+    fn product_error(a: f64, b: f64, product: f64) -> f64 {
+        let ((a_high, a_low), (b_high, b_low)) = (halves(a), halves(b));
+        // With zero added, so that no error is +0.
+        a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low) + 0.0
+    }
+
     /// Writes some lanes, counted from 0, to the end of rows that are partly full; see [`End`]. What stands behind the new end means
     /// nothing afterwards.
     #[inline(always)]
@@ -159,6 +170,14 @@ pub trait Lanes:
     }
 }
 
+/// A number of half the digits, and the rest.
+#[inline(always)]
+fn halves(x: f64) -> (f64, f64) {
+    let scaled = ((1_u64 << 27) + 1) as f64 * x;
+    let high = scaled - (scaled - x);
+    (high, x - high)
+}
+
 /// `f32` numbers side by side.
 pub trait Floats:
     Copy + Debug + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self> + 'static
@@ -201,6 +220,12 @@ pub trait Eight: Floats + Div<Output = Self> {
     fn times_sign(self, sign: Self) -> Self;
     /// Where this is less or equal; never with NaN.
     fn le(self, other: Self) -> Bits;
+    /// `self * factor + addend`, rounded once or twice, whichever the machine does faster: for filters whose bounds hold either way,
+    /// and for nothing that a picture depends on.
+    #[inline(always)]
+    fn multiply_add(self, factor: Self, addend: Self) -> Self {
+        self * factor + addend
+    }
     /// Asks for memory that will soon be read.
     fn prefetch<T>(place: &T);
 }
@@ -258,12 +283,19 @@ impl InstructionSet {
 /// Does some work with the lanes of an instruction set; with portable ones where the machine does not have it.
 #[inline]
 pub fn dispatch<W: Work>(set: InstructionSet, work: W) -> W::Output {
+    // Each way is a function by itself: their frames together would be a page and more, which each call would pay for.
     match set {
-        InstructionSet::Scalar => work.run::<f64>(),
         #[cfg(target_arch = "x86_64")]
         InstructionSet::Avx512 if x86::has_avx512() => x86::Eight512::stage(work),
         #[cfg(target_arch = "x86_64")]
         InstructionSet::Avx2 if x86::has_avx2() => x86::Eight256::stage(work),
-        _ => work.run::<portable::Eight>(),
+        InstructionSet::Scalar => apart::<f64, W>(work),
+        _ => apart::<portable::Eight, W>(work),
     }
+}
+
+/// Work that is not made part of the function that asks for it.
+#[inline(never)]
+fn apart<L: Lanes, W: Work>(work: W) -> W::Output {
+    work.run::<L>()
 }

@@ -119,8 +119,33 @@ fn numbers() -> impl Strategy<Value = [f64; WIDTH]> {
     prop::collection::vec(number, WIDTH).prop_map(|v| std::array::from_fn(|i| v[i]))
 }
 
+/// Products with something added, which may be rounded once or twice.
+struct Loose<'a>(&'a [f32; WIDTH], &'a [f32; WIDTH], &'a [f32; WIDTH]);
+
+impl Work for Loose<'_> {
+    type Output = [f32; WIDTH];
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> [f32; WIDTH] {
+        let [a, b, c] = [self.0, self.1, self.2].map(|row| <L::Eight as Floats>::load(row, 0));
+        a.multiply_add(b, c).to_array()
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+    #[test]
+    fn loose_sums_err_by_two_roundings(rows in prop::array::uniform3(prop::array::uniform8(-1e3..1e3_f32))) {
+        let [a, b, c] = &rows;
+        for set in InstructionSet::available() {
+            let sums = dispatch(set, Loose(a, b, c));
+            for lane in 0..WIDTH {
+                let [a, b, c] = [a[lane], b[lane], c[lane]].map(f64::from);
+                let bound = f64::from(f32::EPSILON) * 0.5 * 1.001 * ((a * b).abs() + (a * b + c).abs());
+                prop_assert!((f64::from(sums[lane]) - (a * b + c)).abs() <= bound, "{set:?} {a} {b} {c}");
+            }
+        }
+    }
+
     #[test]
     fn all_instructions_give_the_same_bits(a in numbers(), b in numbers(), bits in any::<u8>()) {
         let work = || Everything { a: &a, b: &b, bits: Bits(bits) };
@@ -217,6 +242,49 @@ fn lanes_go_to_the_end_of_rows() {
             }
         }
     }
+}
+
+/// A product of each lane of two rows, and what its rounding took.
+struct Products<'a>(&'a [f64; WIDTH], &'a [f64; WIDTH]);
+
+impl Work for Products<'_> {
+    type Output = [f64; WIDTH];
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> [f64; WIDTH] {
+        let mut errors = [0.0; WIDTH];
+        for (lane, error) in errors.iter_mut().enumerate() {
+            let (a, b) = (self.0[lane], self.1[lane]);
+            *error = L::product_error(a, b, a * b);
+        }
+        errors
+    }
+}
+
+#[test]
+fn errors_of_products_are_exact_and_the_same_everywhere() {
+    let mut state = 1_u64;
+    let mut number = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        // Whole numbers of up to 53 bits, often of few, and zeros of both signs.
+        let size = (state >> 58).min(53);
+        ((state >> 5 & ((1 << size) - 1)) as f64).copysign(if state & (1 << 57) == 0 { 1.0 } else { -1.0 })
+    };
+    let mut inexact = 0;
+    for _ in 0..20_000 {
+        let (a, b) = (std::array::from_fn(|_| number()), std::array::from_fn(|_| number()));
+        let scalar = dispatch(InstructionSet::Scalar, Products(&a, &b));
+        for lane in 0..WIDTH {
+            let truth = (a[lane] as i128 * b[lane] as i128 - (a[lane] * b[lane]) as i128) as f64;
+            assert_eq!(scalar[lane], truth, "{} {}", a[lane], b[lane]);
+            inexact += usize::from(truth != 0.0);
+        }
+        for set in InstructionSet::available() {
+            let errors = dispatch(set, Products(&a, &b));
+            assert_eq!(errors.map(f64::to_bits), scalar.map(f64::to_bits), "{set:?} {a:?} {b:?}");
+        }
+    }
+    // The twin: a product alone is not exact.
+    assert!(inexact > 20_000, "{inexact}");
 }
 
 #[test]

@@ -14,7 +14,9 @@ use super::{Bits, Eight, End, Floats, Lanes, WIDTH, Work};
 #[inline]
 pub fn has_avx2() -> bool {
     static HAS: OnceLock<bool> = OnceLock::new();
-    *HAS.get_or_init(|| is_x86_feature_detected!("avx2") && is_x86_feature_detected!("bmi2"))
+    *HAS.get_or_init(|| {
+        is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") && is_x86_feature_detected!("bmi2")
+    })
 }
 
 /// Whether the machine has what [`Eight512`] needs.
@@ -117,12 +119,20 @@ impl Lanes for Eight512 {
     #[inline(always)]
     fn stage<W: Work>(work: W) -> W::Output {
         #[inline(never)]
-        #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,bmi1,bmi2,lzcnt,popcnt")]
+        #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
         fn with_instructions<W: Work>(work: W) -> W::Output {
             work.run::<Eight512>()
         }
         // SAFETY: the instructions are there, see the top of the file; every machine with AVX2 counts bits.
         unsafe { with_instructions(work) }
+    }
+    #[expect(
+        clippy::disallowed_methods,
+        reason = "what comes of it is exact, so it is the same number on all machines"
+    )]
+    #[inline(always)]
+    fn product_error(a: f64, b: f64, product: f64) -> f64 {
+        a.mul_add(b, -product)
     }
     #[inline(always)]
     fn splat(value: f64) -> Self {
@@ -275,12 +285,20 @@ impl Lanes for Eight256 {
     #[inline(always)]
     fn stage<W: Work>(work: W) -> W::Output {
         #[inline(never)]
-        #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
+        #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
         fn with_instructions<W: Work>(work: W) -> W::Output {
             work.run::<Eight256>()
         }
         // SAFETY: the instructions are there, see the top of the file; every machine with AVX2 counts bits.
         unsafe { with_instructions(work) }
+    }
+    #[expect(
+        clippy::disallowed_methods,
+        reason = "what comes of it is exact, so it is the same number on all machines"
+    )]
+    #[inline(always)]
+    fn product_error(a: f64, b: f64, product: f64) -> f64 {
+        a.mul_add(b, -product)
     }
     #[inline(always)]
     fn splat(value: f64) -> Self {
@@ -562,6 +580,11 @@ macro_rules! floats {
                 let ($a, $b) = (self.0, other.0);
                 // SAFETY: as above.
                 unsafe { Bits($le as u8) }
+            }
+            #[inline(always)]
+            fn multiply_add(self, factor: Self, addend: Self) -> Self {
+                // SAFETY: as above.
+                unsafe { Self(_mm256_fmadd_ps(self.0, factor.0, addend.0)) }
             }
             #[inline(always)]
             fn prefetch<T>(place: &T) {
