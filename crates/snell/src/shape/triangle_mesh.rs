@@ -207,7 +207,7 @@ impl TriangleMesh {
     /// # Panics
     /// Where there is no such triangle.
     pub fn hit(&self, ray: &Ray, triangle: u32, t: f64) -> MeshHit {
-        let meeting = RaySpace::new(ray).and_then(|space| space.meet(self.corners(triangle)));
+        let meeting = RaySpace::new(ray).and_then(|space| space.meet::<f64>(self.corners(triangle)));
         meeting.map_or(MeshHit { t, triangle, barycentric: [1.0 / 3.0; 3], front: true }, |meeting| {
             MeshHit::new(triangle, meeting)
         })

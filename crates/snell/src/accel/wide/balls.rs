@@ -125,7 +125,7 @@ impl<F: Eight> BallRay<F> {
         let middle = dot(f, self.scaled);
         let mut beside = f;
         for (beside, direction) in beside.iter_mut().zip(self.direction) {
-            *beside = *beside - direction * middle;
+            *beside = direction.multiply_add(-middle, *beside);
         }
         let reach = F::load(&block.radius, 0) + self.error;
         let (front, back) = (middle - reach, middle + reach);
@@ -138,5 +138,5 @@ impl<F: Eight> BallRay<F> {
 
 #[inline(always)]
 fn dot<F: Eight>(a: [F; 3], b: [F; 3]) -> F {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    a[0].multiply_add(b[0], a[1].multiply_add(b[1], a[2] * b[2]))
 }

@@ -37,6 +37,7 @@ pub(crate) use memory::roomy;
 pub(crate) use path::Path;
 pub(crate) use probe::{Approach, BoxLine, BoxRay, EPSILON, Probe, splat, widened_measure};
 pub(crate) use shared::{NONE, Visited, number};
+pub(crate) use slabs::Slabs;
 pub(crate) use together::{Group, PrimitiveFinder, PrimitiveSeeker};
 pub(crate) use traverse::take_lane;
 

@@ -7,15 +7,16 @@
 //! most, times a small number. Trees with E outside [2⁻⁴⁰, 2⁴⁰], and rays that rounding in `f64` leaves no digits of, are
 //! the business of [`Slabs`]: what follows may count on no overflow, and on no underflow that matters.
 //!
-//! **The box test.** With ε = 2⁻²⁴, e the new origin and d the new direction on one axis, and lo the plane that is met first:
+//! **The box test.** With ε = 2⁻²⁴, e the new origin and d the new direction on one axis, and p a plane across it, the ray meets the
+//! plane at p · (1/d) + c with c = −(e ± m)/d, computed in `f64` and rounded, where the margin m grows the box on all sides. Each
+//! error but the last is that of a plane that is elsewhere:
 //!
-//! - e errs by 4 u (|origin| + E) from `f64`, u = 2⁻⁵³, and rounding it to `f32`, with the margin m added, by 2 ε E;
-//!   m = 2⁻²¹ E + 2⁻⁴⁵ (|origin| + E) is four times that, and what is left serves the primitive's own test, as in [`slabs`].
-//! - The sign of lo − (e + m) is that of the exact difference of these `f32` numbers. The difference, 1/d in `f32` and
-//!   their product have relative errors of 4 ε together. So where the computed entry is not negative it is
-//!   at most (1 + 4 ε) times what it should be, and where the computed exit is not negative at least 1 − 4 ε times; an exit
-//!   that is negative belongs to a box that is behind. Exits, by way of the inverse, and the limit on s are multiplied by
-//!   1 + 16 ε before they are compared with entries.
+//! - e errs by 4 u (|origin| + E) from `f64`, u = 2⁻⁵³. With |e| ≤ 1.5 E, the rounding of c is worth 1.6 ε E of the plane's place, that
+//!   of 1/d ε E, and that of the product, where it is rounded by itself, ε E. m = 2⁻²¹ E + 2⁻⁴⁵ (|origin| + E) is twice as much,
+//!   and what is left serves the primitive's own test, as in [`slabs`].
+//! - The rounding of the sum is one of ε of itself, so entries may be computed to be at 1 + ε of what they should be, and exits at
+//!   1 − ε; an exit that is negative belongs to a box that is behind. Exits and the limit on s are multiplied by 1 + 16 ε before they
+//!   are compared with entries.
 //! - A component below 2⁻⁴⁰ is taken for ±2⁻⁴⁰. Over the tree it moves the ray by less than 2⁻³⁷ E, which m covers. So
 //!   inverses are finite, and products of at most 2⁴³ · 2⁴⁰.
 //!
@@ -157,11 +158,10 @@ pub fn widened_measure<L: Lanes>(s: L) -> L::Floats {
 /// A probe, made ready for box tests.
 #[derive(Clone, Copy, Debug)]
 pub struct BoxLine {
-    near_origin: [f32; 3],
-    far_origin: [f32; 3],
     inverse: [f32; 3],
-    /// The inverse, enlarged.
-    far_inverse: [f32; 3],
+    /// What is added to a plane times the inverse: of the planes met first, and of those met last.
+    near: [f32; 3],
+    far: [f32; 3],
     /// Which side of a box is met first: 0 the smaller, 1 the larger coordinate.
     near_side: [usize; 3],
 }
@@ -171,18 +171,17 @@ impl BoxLine {
     #[inline(always)]
     pub fn new(probe: &Probe) -> Self {
         let zero = [0.0; 3];
-        let mut line =
-            Self { near_origin: zero, far_origin: zero, inverse: zero, far_inverse: zero, near_side: [0; 3] };
+        let mut line = Self { inverse: zero, near: zero, far: zero, near_side: [0; 3] };
         for axis in 0..3 {
             // Of a tiny component the largest inverse that there may be, with its sign.
             let magnitude = smaller(probe.inverse[axis].abs(), 1.0 / f64::from(LEAST));
-            let direction = probe.direction[axis];
-            let margin = probe.margin.copysign(direction);
+            let (origin, direction) = (probe.origin[axis], probe.direction[axis]);
+            let inverse = magnitude.copysign(direction);
             line.near_side[axis] = usize::from(direction.is_sign_negative());
-            line.near_origin[axis] = (probe.origin[axis] + margin) as f32;
-            line.far_origin[axis] = (probe.origin[axis] - margin) as f32;
-            line.inverse[axis] = magnitude.copysign(direction) as f32;
-            line.far_inverse[axis] = line.inverse[axis] * WIDER;
+            line.inverse[axis] = inverse as f32;
+            let (middle, margin) = (-origin * inverse, probe.margin * magnitude);
+            line.near[axis] = (middle - margin) as f32;
+            line.far[axis] = (middle + margin) as f32;
         }
         line
     }
@@ -191,10 +190,9 @@ impl BoxLine {
 /// A [`BoxLine`] in all lanes.
 #[derive(Clone, Copy)]
 pub struct BoxRay<F> {
-    pub(super) near_origin: [F; 3],
-    pub(super) far_origin: [F; 3],
     pub(super) inverse: [F; 3],
-    pub(super) far_inverse: [F; 3],
+    pub(super) near: [F; 3],
+    pub(super) far: [F; 3],
     pub(super) near_side: [usize; 3],
 }
 
@@ -209,10 +207,9 @@ impl<F: Eight> BoxRay<F> {
     #[inline(always)]
     pub fn spread(line: &BoxLine) -> Self {
         Self {
-            near_origin: splat(&line.near_origin),
-            far_origin: splat(&line.far_origin),
             inverse: splat(&line.inverse),
-            far_inverse: splat(&line.far_inverse),
+            near: splat(&line.near),
+            far: splat(&line.far),
             near_side: line.near_side,
         }
     }
@@ -221,22 +218,23 @@ impl<F: Eight> BoxRay<F> {
     #[inline(always)]
     fn near(&self, node: &WideNode, axis: usize) -> F {
         // Masked only to show that the index is in range.
-        (F::load(&node.planes[axis][self.near_side[axis] & 1], 0) - self.near_origin[axis]) * self.inverse[axis]
+        let planes = F::load(&node.planes[axis][self.near_side[axis] & 1], 0);
+        planes.multiply_add(self.inverse[axis], self.near[axis])
     }
 
-    /// Where the ray meets the farther planes of an axis, enlarged.
+    /// Where the ray meets the farther planes of an axis.
     #[inline(always)]
     fn far(&self, node: &WideNode, axis: usize) -> F {
         let planes = F::load(&node.planes[axis][self.near_side[axis] & 1 ^ 1], 0);
-        (planes - self.far_origin[axis]) * self.far_inverse[axis]
+        planes.multiply_add(self.inverse[axis], self.far[axis])
     }
 
     /// Which children of a node the ray enters before the limit, and where it does, not before 0.
     #[inline(always)]
     pub(super) fn enter(&self, node: &WideNode, limit: F) -> (u32, F) {
         let enter = self.near(node, 0).greater(self.near(node, 1)).greater(self.near(node, 2).greater(F::splat(0.0)));
-        let leave = self.far(node, 0).lesser(self.far(node, 1)).lesser(self.far(node, 2).lesser(limit));
-        (enter.le(leave).mask(), enter)
+        let leave = self.far(node, 0).lesser(self.far(node, 1)).lesser(self.far(node, 2)) * F::splat(WIDER);
+        (enter.le(leave.lesser(limit)).mask(), enter)
     }
 }
 

@@ -3,7 +3,7 @@
 use snell_math::lanes::{Bits, Eight, Floats, LaneVector, Lanes, WIDTH};
 
 use super::WideTree;
-use super::probe::{BoxRay, EXTENTS, LEAST, WIDER};
+use super::probe::{BoxRay, EXTENTS, LEAST};
 
 /// As [`super::Probe`], a ray in each lane.
 #[derive(Clone, Copy)]
@@ -81,10 +81,9 @@ impl WideTree {
 
 /// As [`super::BoxLine`], in rows.
 pub(super) struct BoxLines {
-    near_origin: [[f32; WIDTH]; 3],
-    far_origin: [[f32; WIDTH]; 3],
     inverse: [[f32; WIDTH]; 3],
-    far_inverse: [[f32; WIDTH]; 3],
+    near: [[f32; WIDTH]; 3],
+    far: [[f32; WIDTH]; 3],
     /// The rays that go down on each axis, and meet the larger coordinate first.
     negative: [Bits; 3],
 }
@@ -93,8 +92,7 @@ impl BoxLines {
     #[inline(always)]
     pub(super) fn new<L: Lanes>(probes: &Probes<L>) -> Self {
         let rows = [[0.0; WIDTH]; 3];
-        let mut lines =
-            Self { near_origin: rows, far_origin: rows, inverse: rows, far_inverse: rows, negative: [Bits::NONE; 3] };
+        let mut lines = Self { inverse: rows, near: rows, far: rows, negative: [Bits::NONE; 3] };
         let Probes { origin, direction, inverse, .. } = *probes;
         let axes = [
             (origin.x, direction.x, inverse.x),
@@ -104,12 +102,11 @@ impl BoxLines {
         for (axis, (origin, direction, inverse)) in axes.into_iter().enumerate() {
             // Of a tiny component the largest inverse that there may be, with its sign.
             let magnitude = inverse.abs().smaller(L::splat(1.0 / f64::from(LEAST)));
-            let margin = probes.margin.copysign(direction);
-            let inverse = magnitude.copysign(direction).to_floats();
-            (origin + margin).to_floats().store(&mut lines.near_origin[axis], 0);
-            (origin - margin).to_floats().store(&mut lines.far_origin[axis], 0);
-            inverse.store(&mut lines.inverse[axis], 0);
-            (inverse * L::Floats::splat(WIDER)).store(&mut lines.far_inverse[axis], 0);
+            let inverse = magnitude.copysign(direction);
+            inverse.to_floats().store(&mut lines.inverse[axis], 0);
+            let (middle, margin) = (-(origin * inverse), probes.margin * magnitude);
+            (middle - margin).to_floats().store(&mut lines.near[axis], 0);
+            (middle + margin).to_floats().store(&mut lines.far[axis], 0);
             lines.negative[axis] = negative(direction);
         }
         lines
@@ -120,10 +117,9 @@ impl BoxLines {
     pub(super) fn spread<F: Eight>(&self, lane: usize) -> BoxRay<F> {
         let lane = lane & (WIDTH - 1);
         BoxRay {
-            near_origin: spread(&self.near_origin, lane),
-            far_origin: spread(&self.far_origin, lane),
             inverse: spread(&self.inverse, lane),
-            far_inverse: spread(&self.far_inverse, lane),
+            near: spread(&self.near, lane),
+            far: spread(&self.far, lane),
             near_side: self.negative.map(|negative| usize::from(negative.has(lane))),
         }
     }

@@ -1,16 +1,17 @@
 //! Triangles eight by eight: a filter in `f32` that says of each whether a ray surely meets it, surely misses it, or who knows.
 //!
 //! The filter follows the paper of [`watertight`], without a division until something is nearly met: with the axes renamed
-//! so that the ray is longest on the third, and corners relative to the [`Probe`]'s origin and sheared along its direction,
+//! so that the ray is longest on the third, and corners relative to the line of the [`Probe`] and sheared along it,
 //! the ray meets a triangle where the three edge functions U, V, W have the same sign. What they decide here is kept apart
 //! from what [`RaySpace::meet`] would decide by a bound on their error:
 //!
 //! With ε = 2⁻²⁴, E the mesh's largest coordinate and η the error of `f64` in the probe's origin and in the exact test, which
 //! both are far below ε E unless the ray comes from afar:
 //!
-//! - The origin is within 1.5 E of zero and is rounded to `f32`: 1.5 ε E + η. A corner is exact; relative to the origin it is
-//!   at most 2.5 E and errs by 4 ε E + η. Sheared coordinates x − s z with |s| ≤ 1, s rounded, are at most 5 E and err by
-//!   2 (4 ε E + η) + (2.5 + 2.5 + 5) ε E, so by less than **δ = 24 ε E + 2 η**.
+//! - Across the ray a corner is at x + s z − k, with slopes |s| ≤ 1 and k = o_x + s o_z for an origin within 1.5 E of zero, both
+//!   from `f64`. The rounding of s is worth ε E, that of s z, where it is rounded by itself, ε E, of the sum 2 ε E, of k 3 ε E + 2 η
+//!   with what `f64` loses, of the difference 5 ε E. Along it, z − o_z errs by less. So all coordinates are at most 5 E and err by
+//!   less than **δ = 24 ε E + 2 η**, half of which is left over.
 //! - U = c_x b_y − c_y b_x from coordinates that err by δ errs by δ (|c_x| + |b_y| + |c_y| + |b_x|) + 2 δ², and rounding
 //!   adds less than 5 ε E of the same sum. So all of U, V, W err by less than **τ = 2 δ (S + δ)**, S the sum of the magnitudes
 //!   of all six coordinates.
@@ -81,9 +82,12 @@ impl TriangleBlock {
 pub(super) struct BlockLine {
     /// Which axes of space are called first, second and third.
     axes: [usize; 3],
+    /// The slopes of the direction on the first two axes against the third, negative.
+    slopes: [f32; 2],
+    /// Where the line is on the first two axes when it is at 0 on the third; and where it begins on the third.
     origin: [f32; 3],
-    /// The direction's first and second components, and the third, ±1.
-    direction: [f32; 3],
+    /// The third component of the direction, ±1.
+    sign: f32,
     /// δ.
     error: f32,
 }
@@ -94,10 +98,16 @@ impl BlockLine {
         let axes @ [first, second, third] = space.axes();
         let error = 24.0 * f64::from(EPSILON) * probe.extent + 2.0 * probe.error;
         let (o, d) = (&probe.origin, &probe.direction);
+        let slopes = [-d[first] * d[third], -d[second] * d[third]];
         Self {
             axes,
-            origin: [o[first] as f32, o[second] as f32, o[third] as f32],
-            direction: [d[first] as f32, d[second] as f32, d[third] as f32],
+            slopes: [slopes[0] as f32, slopes[1] as f32],
+            origin: [
+                (o[first] + slopes[0] * o[third]) as f32,
+                (o[second] + slopes[1] * o[third]) as f32,
+                o[third] as f32,
+            ],
+            sign: d[third] as f32,
             error: error as f32,
         }
     }
@@ -107,9 +117,8 @@ impl BlockLine {
 #[derive(Clone, Copy)]
 pub(super) struct BlockRay<F> {
     axes: [usize; 3],
-    origin: [F; 3],
     slopes: [F; 2],
-    /// The sign of the third component of the direction.
+    origin: [F; 3],
     sign: F,
     error: F,
     /// 2 δ.
@@ -136,54 +145,59 @@ impl<F: Eight> BlockRay<F> {
     /// Of what was made ready.
     #[inline(always)]
     pub(super) fn spread(line: &BlockLine) -> Self {
-        let [first, second, sign] = splat(&line.direction);
         Self {
             axes: line.axes,
+            slopes: [F::splat(line.slopes[0]), F::splat(line.slopes[1])],
             origin: splat(&line.origin),
-            slopes: [first, second],
-            sign,
+            sign: F::splat(line.sign),
             error: F::splat(line.error),
             twice: F::splat(2.0 * line.error),
         }
     }
 
-    /// A corner of all triangles in the space of the ray. No closure: not being compiled for the instructions at hand, it would
-    /// become a function that calls others for each of them.
+    /// A corner of all triangles, across the ray. No closure: not being compiled for the instructions at hand, it would become a
+    /// function that calls others for each of them.
     #[inline(always)]
-    fn sheared(&self, block: &TriangleBlock, corner: usize) -> [F; 3] {
-        let row = |k: usize| &block.corners[corner][self.axes[k]];
-        let z = (F::load(row(2), 0) - self.origin[2]).times_sign(self.sign);
-        let x = F::load(row(0), 0) - self.origin[0] - self.slopes[0] * z;
-        let y = F::load(row(1), 0) - self.origin[1] - self.slopes[1] * z;
-        [x, y, z]
+    fn across(&self, block: &TriangleBlock, corner: usize) -> [F; 2] {
+        let [x, y, z] = self.axes;
+        let rows = &block.corners[corner];
+        let z = F::load(&rows[z], 0);
+        let x = z.multiply_add(self.slopes[0], F::load(&rows[x], 0)) - self.origin[0];
+        let y = z.multiply_add(self.slopes[1], F::load(&rows[y], 0)) - self.origin[1];
+        [x, y]
+    }
+
+    /// The same along it.
+    #[inline(always)]
+    fn along(&self, block: &TriangleBlock, corner: usize) -> F {
+        (F::load(&block.corners[corner][self.axes[2]], 0) - self.origin[2]).times_sign(self.sign)
     }
 
     /// The filter; `None` where all are missed for sure, or lie beyond the limit on the measure.
     #[inline(always)]
     pub(super) fn look(&self, block: &TriangleBlock, limit: F) -> Option<Verdict<F>> {
-        let (a, b, c) = (self.sheared(block, 0), self.sheared(block, 1), self.sheared(block, 2));
+        let (a, b, c) = (self.across(block, 0), self.across(block, 1), self.across(block, 2));
         let (u, v, w) = (edge(b, c), edge(c, a), edge(a, b));
-        let sum = size(a) + size(b) + size(c);
-        let tolerance = (sum + self.error) * self.twice;
+        let tolerance = (size(a) + size(b) + size(c) + self.error) * self.twice;
         let (least, most) = (u.lesser(v).lesser(w), u.greater(v).greater(w));
         let negative = F::splat(-0.0);
         let candidates = tolerance.times_sign(negative).le(least) | most.le(tolerance);
         if candidates.is_empty() {
             return None;
         }
+        let (a, b, c) = (self.along(block, 0), self.along(block, 1), self.along(block, 2));
         let slack = self.error * F::splat(10.0);
-        let (front, back) = (a[2].lesser(b[2]).lesser(c[2]) - slack, a[2].greater(b[2]).greater(c[2]) + slack);
+        let (front, back) = (a.lesser(b).lesser(c) - slack, a.greater(b).greater(c) + slack);
         let candidates = candidates & front.le(limit) & F::splat(0.0).le(back);
         let area = u + v + w;
         let size = area.abs();
         let is_clear = (tolerance * F::splat(8.0)).lt(size);
         let sure = candidates & is_clear & (tolerance.lt(least) | most.lt(tolerance.times_sign(negative)));
-        let (ab, ac) = (b[2] - a[2], c[2] - a[2]);
+        let (ab, ac) = (b - a, c - a);
         let inverse = F::splat(1.0) / area;
         // Weights first: the product of an edge function and a length may be too small a number.
-        let middle = a[2] + (v * inverse * ab + w * inverse * ac);
-        let width = (ab.abs() + ac.abs()) * (tolerance * inverse.abs() * F::splat(12.0));
-        let width = width + slack;
+        let middle = (v * inverse).multiply_add(ab, (w * inverse).multiply_add(ac, a));
+        let width = (ab.abs() + ac.abs()).multiply_add(tolerance * inverse.abs() * F::splat(12.0), slack);
         let unsure = candidates.without(sure).mask();
         Some(Verdict { sure: sure.mask(), unsure, low: middle - width, high: middle + width })
     }
@@ -191,12 +205,12 @@ impl<F: Eight> BlockRay<F> {
 
 /// The edge function from one corner to the next.
 #[inline(always)]
-fn edge<F: Eight>(from: [F; 3], to: [F; 3]) -> F {
-    from[0] * to[1] - from[1] * to[0]
+fn edge<F: Eight>(from: [F; 2], to: [F; 2]) -> F {
+    from[0].multiply_add(to[1], -(from[1] * to[0]))
 }
 
 /// The magnitude of a corner across the ray.
 #[inline(always)]
-fn size<F: Eight>(corner: [F; 3]) -> F {
+fn size<F: Eight>(corner: [F; 2]) -> F {
     corner[0].abs() + corner[1].abs()
 }

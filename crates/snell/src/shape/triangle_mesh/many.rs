@@ -74,11 +74,16 @@ impl<'a> Flight<'a> {
 
     /// One step; false where it was the last.
     #[inline(always)]
-    fn step<F: Eight>(&mut self, mesh: &TriangleMesh) -> bool {
+    fn step<L: Lanes>(&mut self, mesh: &TriangleMesh) -> bool {
         match self.path.leaf() {
-            None => self.path.descend(&mesh.tree, &BoxRay::<F>::spread(&self.boxes), self.limit),
+            None => self.path.descend(&mesh.tree, &BoxRay::<L::Eight>::spread(&self.boxes), self.limit),
             Some(leaf) => {
-                self.search.leaf(&BlockRay::<F>::spread(&self.triangles), &self.probe, leaf, &mut self.limit);
+                self.search.leaf::<L>(
+                    &BlockRay::<L::Eight>::spread(&self.triangles),
+                    &self.probe,
+                    leaf,
+                    &mut self.limit,
+                );
                 self.path.leave(self.limit)
             }
         }
@@ -99,11 +104,11 @@ impl Work for Many<'_, '_> {
         }
         let mut turn = 0;
         while let Some(flight) = flights.get_mut(turn) {
-            if flight.step::<L::Eight>(mesh) {
+            if flight.step::<L>(mesh) {
                 flight.path.prefetch::<L::Eight>(&mesh.tree, |leaf| L::Eight::prefetch(&mesh.blocks[leaf as usize]));
                 turn += 1;
             } else {
-                self.hits[flight.place] = flight.search.finish(flight.limit);
+                self.hits[flight.place] = flight.search.finish::<L>(flight.limit);
                 match self.take_off() {
                     Some((place, probe, search)) => {
                         flight.limit = probe.limit(self.t_max[place]);

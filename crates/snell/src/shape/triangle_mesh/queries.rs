@@ -15,7 +15,7 @@ use snell_math::lanes::{Eight, Floats, Lanes, WIDTH, Work, dispatch};
 use super::blocks::{BlockRay, TriangleBlock};
 use super::watertight::{Meeting, RaySpace};
 use super::{MeshHit, TriangleMesh};
-use crate::accel::wide::{Approach, BoxRay, NONE, Probe, Visited, number, take_lane};
+use crate::accel::wide::{Approach, BoxRay, NONE, Probe, Slabs, Visited, number, take_lane};
 
 /// How many triangles that are surely met wait for the decision, at most.
 const WAITING: usize = 8;
@@ -55,16 +55,16 @@ impl<'a> Search<'a> {
 
     /// Decides about one triangle.
     #[inline]
-    fn decide(&mut self, block: &TriangleBlock, lane: usize) {
-        if let Some(meeting) = self.space.meet(block.corners(lane)) {
+    fn decide<L: Lanes>(&mut self, block: &TriangleBlock, lane: usize) {
+        if let Some(meeting) = self.space.meet::<L>(block.corners(lane)) {
             self.take(block, lane, meeting);
         }
     }
 
     /// Takes one triangle that is surely met.
     #[inline(always)]
-    fn take_surely(&mut self, block: &TriangleBlock, lane: usize) {
-        if let Some(meeting) = self.space.meet_surely(&block.corners_on(self.space.axes(), lane)) {
+    fn take_surely<L: Lanes>(&mut self, block: &TriangleBlock, lane: usize) {
+        if let Some(meeting) = self.space.meet_surely::<L>(&block.corners_on(self.space.axes(), lane)) {
             self.take(block, lane, meeting);
         }
     }
@@ -82,21 +82,21 @@ impl<'a> Search<'a> {
 
     /// Decides about those that wait and are not surely beyond the limit.
     #[inline(always)]
-    fn settle(&mut self, limit: f32) {
+    fn settle<L: Lanes>(&mut self, limit: f32) {
         for place in 0..std::mem::take(&mut self.count) {
             let Waiting { low, block, lane } = self.waiting[place];
             if low <= limit {
                 let blocks = self.blocks;
-                self.take_surely(&blocks[block as usize], lane as usize);
+                self.take_surely::<L>(&blocks[block as usize], lane as usize);
             }
         }
     }
 
     /// Looks at a leaf, and lowers the limit by what is found.
     #[inline(always)]
-    pub(super) fn leaf<F: Eight>(&mut self, ray: &BlockRay<F>, probe: &Probe, leaf: u32, limit: &mut f32) {
+    pub(super) fn leaf<L: Lanes>(&mut self, ray: &BlockRay<L::Eight>, probe: &Probe, leaf: u32, limit: &mut f32) {
         let block = &self.blocks[leaf as usize];
-        let Some(verdict) = ray.look(block, F::splat(*limit)) else { return };
+        let Some(verdict) = ray.look(block, L::Eight::splat(*limit)) else { return };
         let (low, high) = (verdict.low.to_array(), verdict.high.to_array());
         let (mut sure, mut unsure) = (verdict.sure, verdict.unsure);
         while sure != 0 {
@@ -106,8 +106,10 @@ impl<'a> Search<'a> {
             }
             if low[lane] <= 0.0 {
                 // It may lie in front of the range, and must not shorten it.
-                self.take_surely(block, lane);
-                *limit = limit.min(probe.limit(self.t_max));
+                if high[lane] >= 0.0 {
+                    self.take_surely::<L>(block, lane);
+                    *limit = limit.min(probe.limit(self.t_max));
+                }
                 continue;
             }
             let end = Probe::widened(high[lane]);
@@ -115,21 +117,21 @@ impl<'a> Search<'a> {
                 *limit = end;
             }
             if self.count == WAITING {
-                self.make_room(*limit);
+                self.make_room::<L>(*limit);
                 *limit = limit.min(probe.limit(self.t_max));
             }
             self.waiting[self.count] = Waiting { low: low[lane], block: leaf, lane: lane as u32 };
             self.count += 1;
         }
         while unsure != 0 {
-            self.decide(block, take_lane(&mut unsure));
+            self.decide::<L>(block, take_lane(&mut unsure));
             *limit = limit.min(probe.limit(self.t_max));
         }
     }
 
     /// Forgets those that are surely beyond the limit; decides where that leaves no room.
     #[cold]
-    fn make_room(&mut self, limit: f32) {
+    fn make_room<L: Lanes>(&mut self, limit: f32) {
         let mut kept = 0;
         for place in 0..self.count {
             if self.waiting[place].low <= limit {
@@ -139,30 +141,29 @@ impl<'a> Search<'a> {
         }
         self.count = kept;
         if kept == WAITING {
-            self.settle(limit);
+            self.settle::<L>(limit);
         }
     }
 
     /// The closest hit, after all leaves have been looked at.
     #[inline(always)]
-    pub(super) fn finish(&mut self, limit: f32) -> Option<MeshHit> {
+    pub(super) fn finish<L: Lanes>(&mut self, limit: f32) -> Option<MeshHit> {
         // As with most rays that hit: what is met need not be written down to be compared with another.
         if self.count == 1 && self.best.is_none() {
             let Waiting { block, lane, .. } = self.waiting[0];
             let (block, lane) = (&self.blocks[block as usize], lane as usize);
-            let meeting = self.space.meet_surely(&block.corners_on(self.space.axes(), lane))?;
+            let meeting = self.space.meet_surely::<L>(&block.corners_on(self.space.axes(), lane))?;
             let is_in_range = meeting.is_within(self.t_min, self.t_max);
             return is_in_range.then(|| MeshHit::new(number(block.triangles[lane & (WIDTH - 1)]), meeting));
         }
-        self.settle(limit);
+        self.settle::<L>(limit);
         self.best.map(|(triangle, meeting)| MeshHit::new(triangle, meeting))
     }
 }
 
 struct Closest<'a> {
     mesh: &'a TriangleMesh,
-    probe: &'a Probe,
-    space: &'a RaySpace,
+    ray: &'a Ray,
     t_min: f64,
     t_max: f64,
 }
@@ -171,36 +172,41 @@ impl Work for Closest<'_> {
     type Output = Option<MeshHit>;
     #[inline(always)]
     fn run<L: Lanes>(self) -> Option<MeshHit> {
-        let Self { mesh, probe, space, t_min, t_max } = self;
+        let Self { mesh, ray, t_min, t_max } = self;
+        let space = &RaySpace::new(ray)?;
+        let probe = &match mesh.tree.approach(ray, t_min, t_max) {
+            Approach::Missed => return None,
+            Approach::Plain(probe) => probe,
+            Approach::Strange(slabs) => return closest_strange(mesh, space, &slabs, t_min, t_max),
+        };
         let mut search = Search::new(&mesh.blocks, space, t_min, t_max);
         let (boxes, triangles) = (BoxRay::<L::Eight>::new(probe), BlockRay::<L::Eight>::new(probe, &search.space));
         let limit = mesh.tree.nearest(&boxes, probe.limit(search.t_max), |leaf, limit| {
-            search.leaf(&triangles, probe, leaf, limit);
+            search.leaf::<L>(&triangles, probe, leaf, limit);
         });
-        search.finish(limit)
+        search.finish::<L>(limit)
     }
 }
 
 /// See [`TriangleMesh::intersect`].
 #[inline]
 pub(super) fn closest(mesh: &TriangleMesh, ray: &Ray, t_min: f64, t_max: f64) -> Option<MeshHit> {
-    let space = &RaySpace::new(ray)?;
-    match mesh.tree.approach(ray, t_min, t_max) {
-        Approach::Missed => None,
-        Approach::Plain(probe) => dispatch(mesh.set, Closest { mesh, probe: &probe, space, t_min, t_max }),
-        Approach::Strange(slabs) => {
-            let mut search = Search::new(&mesh.blocks, space, t_min, t_max);
-            // It never breaks, so there is nothing to know from its end.
-            let _ = mesh.tree.each_strange(&slabs, t_min, t_max, &mut |leaf| {
-                let block = &mesh.blocks[leaf as usize];
-                for lane in filled(block) {
-                    search.decide(block, lane);
-                }
-                ControlFlow::Continue(())
-            });
-            search.finish(0.0)
+    dispatch(mesh.set, Closest { mesh, ray, t_min, t_max })
+}
+
+/// The same, all in `f64`.
+#[cold]
+fn closest_strange(mesh: &TriangleMesh, space: &RaySpace, slabs: &Slabs, t_min: f64, t_max: f64) -> Option<MeshHit> {
+    let mut search = Search::new(&mesh.blocks, space, t_min, t_max);
+    // It never breaks, so there is nothing to know from its end.
+    let _ = mesh.tree.each_strange(slabs, t_min, t_max, &mut |leaf| {
+        let block = &mesh.blocks[leaf as usize];
+        for lane in filled(block) {
+            search.decide::<f64>(block, lane);
         }
-    }
+        ControlFlow::Continue(())
+    });
+    search.finish::<f64>(0.0)
 }
 
 /// The lanes of a block that have a triangle.
@@ -211,28 +217,30 @@ fn filled(block: &TriangleBlock) -> impl Iterator<Item = usize> {
 
 /// Whether a ray meets a triangle of a block between two parameters. `limit` and `surely_before` are measures of the second.
 #[inline(always)]
-pub(super) fn is_met_in<F: Eight>(
+pub(super) fn is_met_in<L: Lanes>(
     block: &TriangleBlock,
-    ray: &BlockRay<F>,
+    ray: &BlockRay<L::Eight>,
     space: &RaySpace,
-    limit: F,
-    surely_before: F,
+    limit: L::Eight,
+    surely_before: L::Eight,
     t_min: f64,
     t_max: f64,
 ) -> bool {
     let Some(verdict) = ray.look(block, limit) else { return false };
-    if verdict.sure & (F::splat(0.0).lt(verdict.low) & verdict.high.le(surely_before)).mask() != 0 {
+    let zero = L::Eight::splat(0.0);
+    if verdict.sure & (zero.lt(verdict.low) & verdict.high.le(surely_before)).mask() != 0 {
         return true;
     }
-    let (mut sure, mut unsure) = (verdict.sure, verdict.unsure);
+    let mut sure = verdict.sure & zero.le(verdict.high.lesser(limit - verdict.low)).mask();
+    let mut unsure = verdict.unsure;
     while sure != 0 {
-        let meeting = space.meet_surely(&block.corners_on(space.axes(), take_lane(&mut sure)));
+        let meeting = space.meet_surely::<L>(&block.corners_on(space.axes(), take_lane(&mut sure)));
         if meeting.is_some_and(|meeting| meeting.is_within(t_min, t_max)) {
             return true;
         }
     }
     while unsure != 0 {
-        let meeting = space.meet(block.corners(take_lane(&mut unsure)));
+        let meeting = space.meet::<L>(block.corners(take_lane(&mut unsure)));
         if meeting.is_some_and(|meeting| meeting.is_within(t_min, t_max)) {
             return true;
         }
@@ -242,8 +250,7 @@ pub(super) fn is_met_in<F: Eight>(
 
 struct Any<'a> {
     mesh: &'a TriangleMesh,
-    probe: &'a Probe,
-    space: &'a RaySpace,
+    ray: &'a Ray,
     t_min: f64,
     t_max: f64,
 }
@@ -252,13 +259,19 @@ impl Work for Any<'_> {
     type Output = bool;
     #[inline(always)]
     fn run<L: Lanes>(self) -> bool {
-        let Self { mesh, probe, space, t_min, t_max } = self;
+        let Self { mesh, ray, t_min, t_max } = self;
+        let Some(space) = &RaySpace::new(ray) else { return false };
+        let probe = &match mesh.tree.approach(ray, t_min, t_max) {
+            Approach::Missed => return false,
+            Approach::Plain(probe) => probe,
+            Approach::Strange(_) => return each(mesh, ray, t_min, t_max, |_| ControlFlow::Break(())).is_break(),
+        };
         let (boxes, triangles) = (BoxRay::<L::Eight>::new(probe), BlockRay::<L::Eight>::new(probe, space));
         let limit = probe.limit(t_max);
         let surely_before = L::Eight::splat(probe.surely_before(t_max));
         let visit = |leaf: u32| {
             let block = &mesh.blocks[leaf as usize];
-            let is_met = is_met_in(block, &triangles, space, L::Eight::splat(limit), surely_before, t_min, t_max);
+            let is_met = is_met_in::<L>(block, &triangles, space, L::Eight::splat(limit), surely_before, t_min, t_max);
             if is_met { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
         mesh.tree.each(&boxes, limit, visit).is_break()
@@ -268,12 +281,7 @@ impl Work for Any<'_> {
 /// See [`TriangleMesh::any`].
 #[inline]
 pub(super) fn any(mesh: &TriangleMesh, ray: &Ray, t_min: f64, t_max: f64) -> bool {
-    let Some(space) = &RaySpace::new(ray) else { return false };
-    match mesh.tree.approach(ray, t_min, t_max) {
-        Approach::Missed => false,
-        Approach::Plain(probe) => dispatch(mesh.set, Any { mesh, probe: &probe, space, t_min, t_max }),
-        Approach::Strange(_) => each(mesh, ray, t_min, t_max, |_| ControlFlow::Break(())).is_break(),
-    }
+    dispatch(mesh.set, Any { mesh, ray, t_min, t_max })
 }
 
 /// Finds all hits, each once.
@@ -287,8 +295,8 @@ struct Once<'a, V> {
 
 impl<V: FnMut(MeshHit) -> ControlFlow<()>> Once<'_, V> {
     #[inline(always)]
-    fn decide(&mut self, block: &TriangleBlock, lane: usize) -> ControlFlow<()> {
-        match self.space.meet(block.corners(lane)) {
+    fn decide<L: Lanes>(&mut self, block: &TriangleBlock, lane: usize) -> ControlFlow<()> {
+        match self.space.meet::<L>(block.corners(lane)) {
             Some(meeting)
                 if meeting.is_within(self.t_min, self.t_max) && self.visited.is_new(block.triangles[lane]) =>
             {
@@ -317,7 +325,7 @@ impl<V: FnMut(MeshHit) -> ControlFlow<()>> Work for Each<'_, '_, V> {
             let Some(verdict) = triangles.look(block, L::Eight::splat(limit)) else { return ControlFlow::Continue(()) };
             let mut candidates = verdict.sure | verdict.unsure;
             while candidates != 0 {
-                once.decide(block, take_lane(&mut candidates))?;
+                once.decide::<L>(block, take_lane(&mut candidates))?;
             }
             ControlFlow::Continue(())
         })
@@ -340,7 +348,7 @@ pub(super) fn each(
         Approach::Plain(probe) => dispatch(mesh.set, Each { mesh, probe: &probe, once: &mut once }),
         Approach::Strange(slabs) => mesh.tree.each_strange(&slabs, t_min, t_max, &mut |leaf| {
             let block = &mesh.blocks[leaf as usize];
-            filled(block).try_for_each(|lane| once.decide(block, lane))
+            filled(block).try_for_each(|lane| once.decide::<f64>(block, lane))
         }),
     }
 }

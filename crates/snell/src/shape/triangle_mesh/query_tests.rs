@@ -128,8 +128,9 @@ fn check(mesh: &TriangleMesh, rays: usize, scale: f64, random: &mut Random) {
     for i in 0..rays {
         let ray = ray_of(i, mesh, scale, random);
         let Some(space) = RaySpace::new(&ray) else { continue };
-        let meetings: Vec<(u32, Meeting)> =
-            (0..mesh.triangles.len() as u32).filter_map(|id| Some((id, space.meet(mesh.corners(id))?))).collect();
+        let meetings: Vec<(u32, Meeting)> = (0..mesh.triangles.len() as u32)
+            .filter_map(|id| Some((id, space.meet::<f64>(mesh.corners(id))?)))
+            .collect();
         let some_t = meetings.get(i % meetings.len().max(1)).map_or(1.0, |(_, meeting)| meeting.t);
         // Ranges that end or begin exactly at a hit among them.
         let (t_min, t_max) = [
@@ -210,7 +211,7 @@ fn the_filter_says_nothing_that_is_not_so_and_much() {
                 for set in InstructionSet::available() {
                     let said = dispatch(set, Look(&mesh, &probe, &space));
                     for id in 0..mesh.triangles.len() as u32 {
-                        let truth = space.meet(mesh.corners(id));
+                        let truth = space.meet::<f64>(mesh.corners(id));
                         let said = said.iter().find(|said| said.0 == id);
                         match (truth, said) {
                             (Some(meeting), Some((_, true, low, high))) => {
@@ -247,7 +248,7 @@ fn a_filter_without_tolerance_is_caught() {
             wrong += (0..mesh.triangles.len() as u32)
                 .filter(|id| {
                     let said = said.iter().find(|said| said.0 == *id);
-                    match space.meet(mesh.corners(*id)) {
+                    match space.meet::<f64>(mesh.corners(*id)) {
                         None => said.is_some_and(|said| said.1),
                         Some(meeting) => said.is_none() && meeting.t > probe.start,
                     }

@@ -239,11 +239,11 @@ proptest! {
             let ids = || (0..mesh.triangles.len() as u32).filter(|i| whole(*i));
             let in_range = |m: &Meeting| t_min < m.t && m.t <= t_max;
             let closest = ids()
-                .filter_map(|i| Some((i, space.meet(mesh.corners(i)).filter(in_range)?)))
+                .filter_map(|i| Some((i, space.meet::<f64>(mesh.corners(i)).filter(in_range)?)))
                 .min_by(|a, b| a.1.t.total_cmp(&b.1.t).then(a.0.cmp(&b.0)))
                 .map(|(i, meeting)| MeshHit::new(i, meeting));
             prop_assert_eq!(mesh.intersect(&ray, t_min, t_max), closest);
-            let all: Vec<u32> = ids().filter(|i| space.meet(mesh.corners(*i)).as_ref().is_some_and(in_range)).collect();
+            let all: Vec<u32> = ids().filter(|i| space.meet::<f64>(mesh.corners(*i)).as_ref().is_some_and(in_range)).collect();
             let mut found = Vec::new();
             let _ = mesh.for_each_hit(&ray, t_min, t_max, |hit| { found.push(hit.triangle); ControlFlow::Continue(()) });
             found.sort_unstable();

@@ -70,7 +70,7 @@ impl<L: Lanes> Seeker for ClosestAtLeaves<'_, '_, L> {
     fn leaf(&mut self, leaf: u32, rays: Bits, limits: &mut [f32; WIDTH]) {
         for lane in rays.lanes() {
             let ray = BlockRay::<L::Eight>::spread(&self.ready.triangles[lane]);
-            self.searches[lane].leaf(&ray, &self.ready.probes[lane], leaf, &mut limits[lane]);
+            self.searches[lane].leaf::<L>(&ray, &self.ready.probes[lane], leaf, &mut limits[lane]);
         }
     }
 }
@@ -86,7 +86,7 @@ impl Work for Closest<'_> {
         let mut limits = ready.group.limits;
         ready.group.nearest_in::<L::Eight>(&mesh.tree, &mut limits, &mut seeker);
         for lane in ready.group.plain.lanes() {
-            hits[lane] = seeker.searches[lane].finish(limits[lane]);
+            hits[lane] = seeker.searches[lane].finish::<L>(limits[lane]);
         }
         for lane in ready.group.strange.lanes() {
             hits[lane] = mesh.intersect(&rays[lane], 0.0, t_max[lane]);
@@ -126,7 +126,7 @@ impl<L: Lanes> Finder for AnyAtLeaves<'_, '_, L> {
             let t_max = self.t_max[lane];
             let limit = L::Eight::splat(group.limits[lane]);
             let surely_before = L::Eight::splat(probes[lane].surely_before(t_max));
-            if is_met_in(block, &ray, &spaces[lane], limit, surely_before, 0.0, t_max) {
+            if is_met_in::<L>(block, &ray, &spaces[lane], limit, surely_before, 0.0, t_max) {
                 met |= Bits::lane(lane);
             }
         }

@@ -16,7 +16,7 @@
 //! two sheared coordinates neither overflow nor fall below about 1e-290.
 
 use snell_math::Ray;
-use wide::f64x4;
+use snell_math::lanes::Lanes;
 
 /// A ray with the shear that takes it to the third axis.
 #[derive(Clone, Copy, Debug)]
@@ -52,20 +52,20 @@ impl RaySpace {
     pub(super) const NOTHING: Self = Self { origin: [0.0; 3], axes: [0, 1, 2], shear: [0.0; 3] };
 
     /// `None` where the direction is zero or anything is not finite: such a ray meets nothing.
-    #[inline]
+    #[inline(always)]
     pub(super) fn new(ray: &Ray) -> Option<Self> {
-        let d = ray.direction;
-        let mut third = if d.y().abs() > d.x().abs() { 1 } else { 0 };
-        if d.z().abs() > d[third].abs() {
-            third = 2;
-        }
+        let (o, d) = (ray.origin.to_array(), ray.direction.to_array());
+        // Without branches, since directions of rays that bounce cannot be foretold.
+        let [x, y, z] = [d[0].abs(), d[1].abs(), d[2].abs()];
+        let (is_y, is_z) = (usize::from(y > x), usize::from(z > x) & usize::from(z > y));
+        let third = is_z << 1 | is_y & !is_z;
+        let (first, second) = [(1, 2), (2, 0), (0, 1)][third];
         // Zero times a number is zero, times anything else it is NaN.
-        let (o, zero) = (ray.origin, 0.0);
-        let zeros = (o.x() * zero + o.y() * zero + o.z() * zero) + (d.x() * zero + d.y() * zero + d.z() * zero);
-        if zeros != 0.0 || zeros.is_nan() || !d[third].is_normal() {
+        let zero = 0.0;
+        let zeros = (o[0] * zero + o[1] * zero + o[2] * zero) + (d[0] * zero + d[1] * zero + d[2] * zero);
+        if zeros.is_nan() || !d[third].is_normal() {
             return None;
         }
-        let (first, second) = [(1, 2), (2, 0), (0, 1)][third];
         let inverse = 1.0 / d[third];
         Some(Self {
             origin: [o[first], o[second], o[third]],
@@ -97,8 +97,8 @@ impl RaySpace {
     }
 
     /// Where the line goes through a triangle. A line in the triangle's plane does not.
-    #[inline]
-    pub(super) fn meet(&self, corners: [[f32; 3]; 3]) -> Option<Meeting> {
+    #[inline(always)]
+    pub(super) fn meet<L: Lanes>(&self, corners: [[f32; 3]; 3]) -> Option<Meeting> {
         let [p, q, r] = &[self.shear(corners[0]), self.shear(corners[1]), self.shear(corners[2])];
         let (mut a, mut b, mut c) = (edge(q, r), edge(r, p), edge(p, q));
         if (a < 0.0 || b < 0.0 || c < 0.0) && (a > 0.0 || b > 0.0 || c > 0.0) {
@@ -111,24 +111,27 @@ impl RaySpace {
                 return None;
             }
         }
-        self.met(p, q, r)
+        self.met::<L>(p, q, r)
     }
 
     /// As [`RaySpace::meet`], for a triangle of which it is known that the line goes through it. The corners' coordinates are those on
     /// the first, second and third axis.
     #[inline(always)]
-    pub(super) fn meet_surely(&self, corners: &[[f32; 3]; 3]) -> Option<Meeting> {
+    pub(super) fn meet_surely<L: Lanes>(&self, corners: &[[f32; 3]; 3]) -> Option<Meeting> {
         // No closure, see `BlockRay::sheared`.
         let (p, q) = (self.shear_ordered(corners[0]), self.shear_ordered(corners[1]));
-        self.met(&p, &q, &self.shear_ordered(corners[2]))
+        self.met::<L>(&p, &q, &self.shear_ordered(corners[2]))
     }
 
     /// Where the line goes through a triangle that it goes through.
     #[inline(always)]
-    fn met(&self, p: &[f64; 3], q: &[f64; 3], r: &[f64; 3]) -> Option<Meeting> {
+    fn met<L: Lanes>(&self, p: &[f64; 3], q: &[f64; 3], r: &[f64; 3]) -> Option<Meeting> {
         // The edge functions are the weights of the opposite corners, up to scale. Those of a long and thin triangle lose most
         // of their digits to the difference of products, and the point would slide along the triangle.
-        let [a, b, c] = exact_edges(p, q, r);
+        let [mut a, mut b, mut c] = exact_edges::<L>(p, q, r);
+        if a.abs() < SMALL || b.abs() < SMALL || c.abs() < SMALL {
+            [a, b, c] = exact_edges_anywhere(p, q, r);
+        }
         let area = a + b + c;
         if area == 0.0 || area.is_nan() {
             return None;
@@ -162,44 +165,29 @@ fn near_edge(from: &[f64; 3], to: &[f64; 3]) -> f64 {
 /// `from` × `to` with the exact sign and at most the last two bits wrong.
 #[inline]
 fn exact_edge(from: &[f64; 3], to: &[f64; 3]) -> f64 {
-    exact_cross(from[0], from[1], to[0], to[1])
+    exact_cross::<f64>(from, to)
 }
 
-/// [`exact_edge`] for the three edges that are opposite to the corners, side by side.
+/// Below this, products may be too small for their errors to be numbers, and instructions might differ.
+const SMALL: f64 = 1e-200;
+
+/// [`exact_edge`] for the three edges that are opposite to the corners.
 #[inline(always)]
-fn exact_edges(p: &[f64; 3], q: &[f64; 3], r: &[f64; 3]) -> [f64; 3] {
-    let row = |a: f64, b: f64, c: f64| f64x4::new([a, b, c, c]);
-    let (from_x, from_y) = (row(q[0], r[0], p[0]), row(q[1], r[1], p[1]));
-    let (to_x, to_y) = (row(r[0], p[0], q[0]), row(r[1], p[1], q[1]));
-    let [a, b, c, _] = exact_cross(from_x, from_y, to_x, to_y).to_array();
-    [a, b, c]
+fn exact_edges<L: Lanes>(p: &[f64; 3], q: &[f64; 3], r: &[f64; 3]) -> [f64; 3] {
+    [exact_cross::<L>(q, r), exact_cross::<L>(r, p), exact_cross::<L>(p, q)]
 }
 
-/// One number, or several side by side: the operations are the same, and so are the bits.
-trait Number:
-    Copy
-    + std::ops::Add<Output = Self>
-    + std::ops::Sub<Output = Self>
-    + std::ops::Mul<Output = Self>
-    + std::ops::Neg<Output = Self>
-{
-    /// 2²⁷ + 1.
-    const SPLITTER: Self;
+/// The same by what every machine has.
+#[cold]
+fn exact_edges_anywhere(p: &[f64; 3], q: &[f64; 3], r: &[f64; 3]) -> [f64; 3] {
+    exact_edges::<f64>(p, q, r)
 }
 
-impl Number for f64 {
-    const SPLITTER: Self = ((1_u64 << 27) + 1) as f64;
-}
-
-impl Number for f64x4 {
-    const SPLITTER: Self = f64x4::new([f64::SPLITTER; 4]);
-}
-
-/// (`from_x`, `from_y`) × (`to_x`, `to_y`), see [`exact_edge`].
+/// See [`exact_edge`].
 #[inline(always)]
-fn exact_cross<N: Number>(from_x: N, from_y: N, to_x: N, to_y: N) -> N {
-    let (left, left_error) = exact_product(from_x, to_y);
-    let (right, right_error) = exact_product(from_y, to_x);
+fn exact_cross<L: Lanes>(from: &[f64; 3], to: &[f64; 3]) -> f64 {
+    let (left, right) = (from[0] * to[1], from[1] * to[0]);
+    let (left_error, right_error) = (L::product_error(from[0], to[1], left), L::product_error(from[1], to[0], right));
     // Where the products do not nearly cancel, the first term decides. Where they do, their difference has no error
     // (Sterbenz), that of their errors is a sum of two terms, and what does not fit into `high` is less than its last
     // place or the last place of the two terms that cancel.
@@ -209,25 +197,9 @@ fn exact_cross<N: Number>(from_x: N, from_y: N, to_x: N, to_y: N) -> N {
     high + (low + errors_error + difference_error)
 }
 
-/// a · b = first + second (Dekker; without a fused operation, which not every machine has).
-#[inline(always)]
-fn exact_product<N: Number>(a: N, b: N) -> (N, N) {
-    let product = a * b;
-    let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
-    (product, a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low))
-}
-
-/// A number of half the digits, and the rest.
-#[inline(always)]
-fn split<N: Number>(x: N) -> (N, N) {
-    let scaled = N::SPLITTER * x;
-    let high = scaled - (scaled - x);
-    (high, x - high)
-}
-
 /// a + b = first + second (Knuth).
 #[inline(always)]
-fn exact_sum<N: Number>(a: N, b: N) -> (N, N) {
+fn exact_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let b_part = sum - a;
     (sum, (a - (sum - b_part)) + (b - b_part))
