@@ -11,6 +11,7 @@ use super::lanes::{HitRows, key_of};
 use super::space::{NONE, Primitive, Space};
 use super::{Geometry, Hit, InnerHit, LocalHit, LocalPlace, QueryScratch, Touching};
 use crate::accel::wide::{Group, PrimitiveFinder, PrimitiveSeeker, widened_measure};
+use crate::shape::triangle_mesh::RayRow;
 use crate::shape::{LaneRay, LaneSpheres};
 use crate::task::{column, set_column};
 
@@ -44,6 +45,11 @@ impl RayGroup {
             set_column(&mut direction, lane, rays[lane].direction.to_array());
         }
         Self { rays, origin, direction, along }
+    }
+
+    #[inline(always)]
+    fn row(&self) -> RayRow<'_> {
+        RayRow { rays: &self.rays, origin: &self.origin, direction: &self.direction }
     }
 
     #[inline(always)]
@@ -242,7 +248,7 @@ impl Geometry {
                 let is_opaque = space.attributes[index as usize].is_opaque;
                 let mut hits = [None; WIDTH];
                 let t_max = found.key.map(f64::next_up);
-                self.meshes[*mesh as usize].intersect_together::<L>(&group.rays, rays, &t_max, &mut hits);
+                self.meshes[*mesh as usize].intersect_together::<L>(group.row(), rays, &t_max, &mut hits);
                 for lane in rays.lanes() {
                     if let Some(hit) = hits[lane] {
                         self.meshes[*mesh as usize].prefetch_triangle::<L::Eight>(hit.triangle);
@@ -408,7 +414,7 @@ impl Geometry {
                         &carried
                     }
                 };
-                self.meshes[*mesh as usize].any_together::<L>(&group.rays, rays, shadows.distance)
+                self.meshes[*mesh as usize].any_together::<L>(group.row(), rays, shadows.distance)
             }
             _ => {
                 let mut blocked = Bits::NONE;

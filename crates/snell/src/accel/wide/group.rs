@@ -10,7 +10,8 @@ use snell_math::lanes::{Bits, Eight, WIDTH};
 
 use super::probe::entry_of;
 use super::probes::BoxLines;
-use super::traverse::{Stack, go_on, take_lane};
+use super::stack::Stack;
+use super::traverse::{PLACES, go_on, take_lane};
 use super::{LEAF, WideNode, WideTree};
 
 /// What looks at leaves for the closest hits.
@@ -90,7 +91,7 @@ impl WideTree {
         if rays.is_empty() {
             return;
         }
-        let (mut stack, mut height) = (Stack::new(), 0);
+        let (mut stack, mut height) = (Stack::<_, PLACES>::new(), 0);
         let mut current = 0_u32;
         loop {
             if current & LEAF != 0 {
@@ -143,7 +144,7 @@ impl WideTree {
         lines: &BoxLines,
         rays: Bits,
         limits: &mut [f32; WIDTH],
-        stack: &mut Stack<u64>,
+        stack: &mut Stack<u64, PLACES>,
         height: &mut usize,
         seeker: &mut impl Seeker,
     ) {
@@ -184,7 +185,7 @@ impl WideTree {
         limits: &[f32; WIDTH],
         finder: &mut impl Finder,
     ) {
-        let (mut stack, mut height) = (Stack::<u64>::new(), 0);
+        let (mut stack, mut height) = (Stack::<u64, PLACES>::new(), 0);
         let (mut current, mut open) = (0_u32, rays);
         while rays.any() {
             let mut next = None;
@@ -222,7 +223,7 @@ impl WideTree {
 fn go_on_together<F: Eight>(
     node: &WideNode,
     entered: &mut Entered<F>,
-    stack: &mut Stack<u64>,
+    stack: &mut Stack<u64, PLACES>,
     height: &mut usize,
 ) -> (u32, Bits) {
     let Entered { by_ray, any, first } = entered;

@@ -6,7 +6,8 @@
 use snell_math::lanes::Eight;
 
 use super::probe::{BoxRay, entry_of};
-use super::traverse::{Stack, go_on};
+use super::stack::Stack;
+use super::traverse::{PLACES, go_on};
 use super::{LEAF, WideTree};
 
 /// Where a ray is in the tree, and what it left for later.
@@ -14,7 +15,7 @@ pub struct Path {
     /// A node or a leaf.
     current: u32,
     height: usize,
-    stack: Stack<u64>,
+    stack: Stack<u64, PLACES>,
 }
 
 impl Path {

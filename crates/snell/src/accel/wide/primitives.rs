@@ -186,7 +186,7 @@ impl WideBvh {
         match self.tree.approach(ray, t_min, t_max) {
             Approach::Missed => ControlFlow::Continue(()),
             Approach::Plain(probe) => {
-                let limit = probe.limit(t_max);
+                let limit = probe.measure.limit(t_max);
                 dispatch(self.set, Each { bvh: self, probe: &probe, limit, once: &mut once })
             }
             Approach::Strange(slabs) => {
@@ -263,9 +263,9 @@ impl<H: Candidate, T: FnMut(u32, f64) -> Option<H>> Work for Closest<'_, H, T> {
     fn run<L: Lanes>(self) {
         let Self { bvh, probe, search } = self;
         let (boxes, balls) = (BoxRay::<L::Eight>::new(probe), BallRay::<L::Eight>::new(probe));
-        bvh.tree.nearest(&boxes, probe.limit(search.t_max), |leaf, limit| {
+        bvh.tree.nearest(&boxes, probe.measure.limit(search.t_max), |leaf, limit| {
             search.leaf(&bvh.leaves[leaf as usize], candidates(bvh, &balls, leaf, *limit));
-            *limit = probe.limit(search.t_max);
+            *limit = probe.measure.limit(search.t_max);
         });
     }
 }

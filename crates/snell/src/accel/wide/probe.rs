@@ -37,13 +37,20 @@ pub(super) const LEAST: f32 = 1.0 / (1_u64 << 40) as f32;
 /// The extents of trees that are tested in `f32`.
 pub(super) const EXTENTS: std::ops::RangeInclusive<f64> = 1.0 / (1_u64 << 40) as f64..=(1_u64 << 40) as f64;
 
-/// A ray that starts where it enters a tree.
+/// How a ray is measured.
 #[derive(Clone, Copy, Debug)]
-pub struct Probe {
+pub struct Measure {
     /// The ray parameter of the new origin.
     pub start: f64,
     /// The largest component of the direction: what the ray parameter is multiplied by.
     pub scale: f64,
+}
+
+/// A ray that starts where it enters a tree.
+#[derive(Clone, Copy, Debug)]
+pub struct Probe {
+    /// See [`Measure`].
+    pub measure: Measure,
     /// The new origin.
     pub origin: [f64; 3],
     /// The new direction.
@@ -101,7 +108,8 @@ impl WideTree {
         }
         let [origin, direction] = [origin.to_array(), direction.to_array()];
         let inverse = inverse.map(|x| x * scale);
-        Approach::Plain(Probe { start, scale, origin, direction, inverse, margin, error, extent })
+        let measure = Measure { start, scale };
+        Approach::Plain(Probe { measure, origin, direction, inverse, margin, error, extent })
     }
 }
 
@@ -114,8 +122,7 @@ fn smaller(a: f64, b: f64) -> f64 {
 impl Probe {
     /// What stands in for one where there is none.
     pub const NOTHING: Self = Self {
-        start: 0.0,
-        scale: 1.0,
+        measure: Measure { start: 0.0, scale: 1.0 },
         origin: [0.0; 3],
         direction: [0.0; 3],
         inverse: [0.0; 3],
@@ -123,7 +130,9 @@ impl Probe {
         error: 0.0,
         extent: 1.0,
     };
+}
 
+impl Measure {
     /// The measure of a ray parameter, enlarged: no entry up to there is computed to be beyond.
     #[inline(always)]
     pub fn limit(&self, t_max: f64) -> f32 {
@@ -141,14 +150,14 @@ impl Probe {
         s as f32 * (1.0 - 16.0 * EPSILON)
     }
 
-    /// As [`Probe::limit`], of an upper bound in the measure itself.
+    /// As [`Measure::limit`], of an upper bound in the measure itself.
     #[inline(always)]
     pub fn widened(s: f32) -> f32 {
         s * WIDER
     }
 }
 
-/// As [`Probe::limit`], of measures (t − start) · scale side by side.
+/// As [`Measure::limit`], of measures (t − start) · scale side by side.
 #[inline(always)]
 pub fn widened_measure<L: Lanes>(s: L) -> L::Floats {
     let (s, zero) = (s.to_floats() * L::Floats::splat(WIDER), L::Floats::splat(0.0));

@@ -4,7 +4,7 @@ use snell_math::lanes::{Bits, Eight, Floats, LaneVector, Lanes, WIDTH};
 
 use super::balls::BallLines;
 use super::group::{Finder, Seeker, column_of};
-use super::probe::{Probe, widened_measure};
+use super::probe::{Measure, Probe, widened_measure};
 use super::probes::BoxLines;
 use super::shared::{NONE, number};
 use super::traverse::take_lane;
@@ -16,11 +16,11 @@ pub struct Group {
     pub plain: Bits,
     /// Those that have to be asked for one by one.
     pub strange: Bits,
-    /// How far each goes, measured as [`Probe::limit`] does.
+    /// How far each goes, measured as [`Measure::limit`] does.
     pub limits: [f32; WIDTH],
-    /// See [`Probe::start`].
+    /// See [`Measure::start`].
     pub start: [f64; WIDTH],
-    /// See [`Probe::scale`].
+    /// See [`Measure::scale`].
     pub scale: [f64; WIDTH],
     origin: [[f64; WIDTH]; 3],
     direction: [[f64; WIDTH]; 3],
@@ -67,8 +67,7 @@ impl Group {
     pub fn probe(&self, lane: usize) -> Probe {
         let lane = lane & (WIDTH - 1);
         Probe {
-            start: self.start[lane],
-            scale: self.scale[lane],
+            measure: self.measure(lane),
             origin: self.origin.map(|row| row[lane]),
             direction: self.direction.map(|row| row[lane]),
             error: self.error[lane],
@@ -77,11 +76,17 @@ impl Group {
         }
     }
 
+    /// How one ray is measured.
+    #[inline(always)]
+    pub fn measure(&self, lane: usize) -> Measure {
+        let lane = lane & (WIDTH - 1);
+        Measure { start: self.start[lane], scale: self.scale[lane] }
+    }
+
     /// Lowers the limit of a ray to a parameter.
     #[inline(always)]
     pub fn limit(&self, lane: usize, t_max: f64) -> f32 {
-        let lane = lane & (WIDTH - 1);
-        Probe { start: self.start[lane], scale: self.scale[lane], ..Probe::NOTHING }.limit(t_max)
+        self.measure(lane).limit(t_max)
     }
 }
 

@@ -3,60 +3,17 @@
 //! Both are given a closure that looks at a leaf. A child that was put on the stack is looked at again only if it still
 //! begins before the limit, which falls as hits are found; one that begins at the limit does, for the sake of ties.
 
-use std::mem::MaybeUninit;
 use std::ops::ControlFlow;
 
 use snell_math::lanes::{Eight, WIDTH};
 
 use super::probe::{BoxRay, entry_of, key};
 use super::slabs::Slabs;
+use super::stack::Stack;
 use super::{LEAF, STACK, WideNode, WideTree};
 
-/// The places of a stack: a power of two, so that an index is held in range by a mask.
-const PLACES: usize = STACK.next_power_of_two();
-
-/// The memory of a stack of fixed size. It is not cleared: that would cost more than a short way through the tree. The height is
-/// a number beside it, which can so be kept in a register.
-pub(super) struct Stack<T>([MaybeUninit<T>; PLACES]);
-
-impl<T: Copy> Stack<T> {
-    #[inline(always)]
-    pub(super) fn new() -> Self {
-        Self([const { MaybeUninit::uninit() }; PLACES])
-    }
-
-    #[inline(always)]
-    pub(super) fn push(&mut self, height: &mut usize, item: T) {
-        self.0[*height & (PLACES - 1)].write(item);
-        *height += 1;
-    }
-
-    #[inline(always)]
-    pub(super) fn pop(&mut self, height: &mut usize) -> Option<T> {
-        *height = height.checked_sub(1)?;
-        // SAFETY: everything below the height was written by `push`, and there are never more than `STACK`.
-        Some(unsafe { self.0[*height & (PLACES - 1)].assume_init() })
-    }
-}
-
-impl Stack<u64> {
-    /// Puts a key where it belongs among those from `base` on, the smallest on top.
-    #[inline(always)]
-    pub(super) fn insert(&mut self, height: &mut usize, key: u64, base: usize) {
-        let mut place = *height;
-        while place > base {
-            let below = self.0[(place - 1) & (PLACES - 1)];
-            // SAFETY: everything below the height was written by `push`.
-            if unsafe { below.assume_init() } >= key {
-                break;
-            }
-            self.0[place & (PLACES - 1)] = below;
-            place -= 1;
-        }
-        self.0[place & (PLACES - 1)].write(key);
-        *height += 1;
-    }
-}
+/// The places of a stack of children.
+pub(super) const PLACES: usize = STACK.next_power_of_two();
 
 /// The lowest lane of a mask that is not empty, which is left without it.
 #[inline(always)]
@@ -73,7 +30,7 @@ pub(super) fn go_on<F: Eight>(
     node: &WideNode,
     entered: &mut u32,
     enter: F,
-    stack: &mut Stack<u64>,
+    stack: &mut Stack<u64, PLACES>,
     height: &mut usize,
 ) -> u32 {
     let first = take_lane(entered);
@@ -101,7 +58,7 @@ impl WideTree {
     /// given the limit too, and may lower it. Returns the last limit.
     #[inline(always)]
     pub fn nearest<F: Eight>(&self, ray: &BoxRay<F>, mut limit: f32, mut visit: impl FnMut(u32, &mut f32)) -> f32 {
-        let (mut stack, mut height) = (Stack::new(), 0);
+        let (mut stack, mut height) = (Stack::<_, PLACES>::new(), 0);
         let mut current = 0_u32;
         loop {
             if current & LEAF == 0 {
@@ -162,7 +119,7 @@ impl WideTree {
         if self.nodes.is_empty() {
             return ControlFlow::Continue(());
         }
-        let (mut stack, mut height) = (Stack::new(), 0);
+        let (mut stack, mut height) = (Stack::<_, PLACES>::new(), 0);
         let mut current = 0_u32;
         loop {
             if current & LEAF == 0 {

@@ -93,6 +93,10 @@ pub(super) struct BlockLine {
 }
 
 impl BlockLine {
+    /// What stands in for one where there is none.
+    pub(super) const NOTHING: Self =
+        Self { axes: [0, 1, 2], slopes: [0.0; 2], origin: [0.0; 3], sign: 1.0, error: 0.0 };
+
     #[inline(always)]
     pub(super) fn new(probe: &Probe, space: &RaySpace) -> Self {
         let axes @ [first, second, third] = space.axes();

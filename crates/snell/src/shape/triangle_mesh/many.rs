@@ -7,10 +7,10 @@ use snell_math::Ray;
 use snell_math::lanes::{Eight, Lanes, Work, dispatch};
 
 use super::blocks::{BlockLine, BlockRay};
-use super::queries::Search;
+use super::queries::{Question, Search};
 use super::watertight::RaySpace;
 use super::{MeshHit, TriangleMesh};
-use crate::accel::wide::{Approach, BoxLine, BoxRay, Path, Probe};
+use crate::accel::wide::{Approach, BoxLine, BoxRay, Measure, Path, Probe};
 
 /// How many rays are in flight: enough to wait for memory together, few enough for the nearest cache to hold what is known of them.
 const IN_FLIGHT: usize = 16;
@@ -20,14 +20,15 @@ const IN_FLIGHT: usize = 16;
 const LARGE: usize = 24 << 20;
 
 /// A ray in flight.
-struct Flight<'a> {
+struct Flight {
     /// Its place among the rays.
     place: usize,
     limit: f32,
     boxes: BoxLine,
     triangles: BlockLine,
-    probe: Probe,
-    search: Search<'a>,
+    measure: Measure,
+    space: RaySpace,
+    search: Search,
     path: Path,
 }
 
@@ -42,10 +43,10 @@ struct Many<'a, 'b> {
     next: usize,
 }
 
-impl<'a> Many<'a, '_> {
+impl Many<'_, '_> {
     /// The next ray that has something before it; the others have no hit, or are traced by themselves.
     #[inline(always)]
-    fn take_off(&mut self) -> Option<(usize, Probe, Search<'a>)> {
+    fn take_off(&mut self) -> Option<(usize, Probe, RaySpace)> {
         while let (Some(ray), Some(&t_max)) = (self.rays.get(self.next), self.t_max.get(self.next)) {
             let place = self.next;
             self.next += 1;
@@ -57,7 +58,7 @@ impl<'a> Many<'a, '_> {
                 Approach::Missed => self.hits[place] = None,
                 Approach::Strange(_) => self.hits[place] = self.mesh.intersect(ray, self.t_min, t_max),
                 Approach::Plain(probe) => {
-                    return Some((place, probe, Search::new(&self.mesh.blocks, &space, self.t_min, t_max)));
+                    return Some((place, probe, space));
                 }
             }
         }
@@ -65,11 +66,12 @@ impl<'a> Many<'a, '_> {
     }
 }
 
-impl<'a> Flight<'a> {
+impl Flight {
     #[inline(always)]
-    fn new((place, probe, search): (usize, Probe, Search<'a>), t_max: f64) -> Self {
-        let (boxes, triangles) = (BoxLine::new(&probe), BlockLine::new(&probe, search.space()));
-        Self { place, limit: probe.limit(t_max), boxes, triangles, probe, search, path: Path::new() }
+    fn new((place, probe, space): (usize, Probe, RaySpace), t_min: f64, t_max: f64) -> Self {
+        let (boxes, triangles) = (BoxLine::new(&probe), BlockLine::new(&probe, &space));
+        let (measure, search) = (probe.measure, Search::new(t_min, t_max));
+        Self { place, limit: measure.limit(t_max), boxes, triangles, measure, space, search, path: Path::new() }
     }
 
     /// One step; false where it was the last.
@@ -78,12 +80,8 @@ impl<'a> Flight<'a> {
         match self.path.leaf() {
             None => self.path.descend(&mesh.tree, &BoxRay::<L::Eight>::spread(&self.boxes), self.limit),
             Some(leaf) => {
-                self.search.leaf::<L>(
-                    &BlockRay::<L::Eight>::spread(&self.triangles),
-                    &self.probe,
-                    leaf,
-                    &mut self.limit,
-                );
+                let question = Question { blocks: &mesh.blocks, space: &self.space, measure: self.measure };
+                self.search.leaf::<L>(&question, &BlockRay::spread(&self.triangles), leaf, &mut self.limit);
                 self.path.leave(self.limit)
             }
         }
@@ -100,7 +98,7 @@ impl Work for Many<'_, '_> {
             && let Some(start) = self.take_off()
         {
             let t_max = self.t_max[start.0];
-            flights.push(Flight::new(start, t_max));
+            flights.push(Flight::new(start, self.t_min, t_max));
         }
         let mut turn = 0;
         while let Some(flight) = flights.get_mut(turn) {
@@ -108,13 +106,16 @@ impl Work for Many<'_, '_> {
                 flight.path.prefetch::<L::Eight>(&mesh.tree, |leaf| L::Eight::prefetch(&mesh.blocks[leaf as usize]));
                 turn += 1;
             } else {
-                self.hits[flight.place] = flight.search.finish::<L>(flight.limit);
+                let question = Question { blocks: &mesh.blocks, space: &flight.space, measure: flight.measure };
+                self.hits[flight.place] = flight.search.finish::<L>(&question, flight.limit);
                 match self.take_off() {
-                    Some((place, probe, search)) => {
-                        flight.limit = probe.limit(self.t_max[place]);
+                    Some((place, probe, space)) => {
+                        let t_max = self.t_max[place];
+                        flight.limit = probe.measure.limit(t_max);
                         flight.boxes = BoxLine::new(&probe);
-                        flight.triangles = BlockLine::new(&probe, search.space());
-                        (flight.place, flight.probe, flight.search) = (place, probe, search);
+                        flight.triangles = BlockLine::new(&probe, &space);
+                        (flight.place, flight.measure, flight.space) = (place, probe.measure, space);
+                        flight.search = Search::new(self.t_min, t_max);
                         flight.path.restart();
                     }
                     None => {

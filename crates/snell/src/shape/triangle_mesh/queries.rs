@@ -15,7 +15,7 @@ use snell_math::lanes::{Eight, Floats, Lanes, WIDTH, Work, dispatch};
 use super::blocks::{BlockRay, TriangleBlock};
 use super::watertight::{Meeting, RaySpace};
 use super::{MeshHit, TriangleMesh};
-use crate::accel::wide::{Approach, BoxRay, NONE, Probe, Slabs, Visited, number, take_lane};
+use crate::accel::wide::{Approach, BoxRay, Measure, NONE, Probe, Slabs, Stack, Visited, number, take_lane};
 
 /// How many triangles that are surely met wait for the decision, at most.
 const WAITING: usize = 8;
@@ -29,42 +29,50 @@ struct Waiting {
     lane: u32,
 }
 
+/// What a ray asks.
+#[derive(Clone, Copy)]
+pub(super) struct Question<'a> {
+    pub(super) blocks: &'a [TriangleBlock],
+    pub(super) space: &'a RaySpace,
+    pub(super) measure: Measure,
+}
+
 /// A search for the closest hit.
-pub(super) struct Search<'a> {
-    blocks: &'a [TriangleBlock],
-    space: RaySpace,
+pub(super) struct Search {
     t_min: f64,
     /// Falls as hits are decided.
     t_max: f64,
     best: Option<(u32, Meeting)>,
-    waiting: [Waiting; WAITING],
+    waiting: Stack<Waiting, WAITING>,
     count: usize,
 }
 
-impl<'a> Search<'a> {
+impl Search {
+    /// Between two ray parameters, the second included.
     #[inline(always)]
-    pub(super) fn new(blocks: &'a [TriangleBlock], space: &RaySpace, t_min: f64, t_max: f64) -> Self {
-        let waiting = [Waiting { low: 0.0, block: 0, lane: 0 }; WAITING];
-        Self { blocks, space: *space, t_min, t_max, best: None, waiting, count: 0 }
+    pub(super) const fn new(t_min: f64, t_max: f64) -> Self {
+        Self { t_min, t_max, best: None, waiting: Stack::new(), count: 0 }
     }
 
+    /// Puts another end to the range.
     #[inline(always)]
-    pub(super) fn space(&self) -> &RaySpace {
-        &self.space
+    pub(super) fn restrict(&mut self, t_max: f64) {
+        self.t_max = t_max;
     }
 
     /// Decides about one triangle.
     #[inline]
-    fn decide<L: Lanes>(&mut self, block: &TriangleBlock, lane: usize) {
-        if let Some(meeting) = self.space.meet::<L>(block.corners(lane)) {
+    fn decide<L: Lanes>(&mut self, question: &Question, block: &TriangleBlock, lane: usize) {
+        if let Some(meeting) = question.space.meet::<L>(block.corners(lane)) {
             self.take(block, lane, meeting);
         }
     }
 
     /// Takes one triangle that is surely met.
     #[inline(always)]
-    fn take_surely<L: Lanes>(&mut self, block: &TriangleBlock, lane: usize) {
-        if let Some(meeting) = self.space.meet_surely::<L>(&block.corners_on(self.space.axes(), lane)) {
+    fn take_surely<L: Lanes>(&mut self, question: &Question, block: &TriangleBlock, lane: usize) {
+        let space = question.space;
+        if let Some(meeting) = space.meet_surely::<L>(&block.corners_on(space.axes(), lane)) {
             self.take(block, lane, meeting);
         }
     }
@@ -82,20 +90,19 @@ impl<'a> Search<'a> {
 
     /// Decides about those that wait and are not surely beyond the limit.
     #[inline(always)]
-    fn settle<L: Lanes>(&mut self, limit: f32) {
-        for place in 0..std::mem::take(&mut self.count) {
-            let Waiting { low, block, lane } = self.waiting[place];
+    fn settle<L: Lanes>(&mut self, question: &Question, limit: f32) {
+        while let Some(Waiting { low, block, lane }) = self.waiting.pop(&mut self.count) {
             if low <= limit {
-                let blocks = self.blocks;
-                self.take_surely::<L>(&blocks[block as usize], lane as usize);
+                self.take_surely::<L>(question, &question.blocks[block as usize], lane as usize);
             }
         }
+        self.count = 0;
     }
 
     /// Looks at a leaf, and lowers the limit by what is found.
     #[inline(always)]
-    pub(super) fn leaf<L: Lanes>(&mut self, ray: &BlockRay<L::Eight>, probe: &Probe, leaf: u32, limit: &mut f32) {
-        let block = &self.blocks[leaf as usize];
+    pub(super) fn leaf<L: Lanes>(&mut self, question: &Question, ray: &BlockRay<L::Eight>, leaf: u32, limit: &mut f32) {
+        let block = &question.blocks[leaf as usize];
         let Some(verdict) = ray.look(block, L::Eight::splat(*limit)) else { return };
         let (low, high) = (verdict.low.to_array(), verdict.high.to_array());
         let (mut sure, mut unsure) = (verdict.sure, verdict.unsure);
@@ -107,56 +114,54 @@ impl<'a> Search<'a> {
             if low[lane] <= 0.0 {
                 // It may lie in front of the range, and must not shorten it.
                 if high[lane] >= 0.0 {
-                    self.take_surely::<L>(block, lane);
-                    *limit = limit.min(probe.limit(self.t_max));
+                    self.take_surely::<L>(question, block, lane);
+                    *limit = limit.min(question.measure.limit(self.t_max));
                 }
                 continue;
             }
-            let end = Probe::widened(high[lane]);
+            let end = Measure::widened(high[lane]);
             if end < *limit {
                 *limit = end;
             }
             if self.count == WAITING {
-                self.make_room::<L>(*limit);
-                *limit = limit.min(probe.limit(self.t_max));
+                self.make_room::<L>(question, *limit);
+                *limit = limit.min(question.measure.limit(self.t_max));
             }
-            self.waiting[self.count] = Waiting { low: low[lane], block: leaf, lane: lane as u32 };
-            self.count += 1;
+            self.waiting.push(&mut self.count, Waiting { low: low[lane], block: leaf, lane: lane as u32 });
         }
         while unsure != 0 {
-            self.decide::<L>(block, take_lane(&mut unsure));
-            *limit = limit.min(probe.limit(self.t_max));
+            self.decide::<L>(question, block, take_lane(&mut unsure));
+            *limit = limit.min(question.measure.limit(self.t_max));
         }
     }
 
     /// Forgets those that are surely beyond the limit; decides where that leaves no room.
     #[cold]
-    fn make_room<L: Lanes>(&mut self, limit: f32) {
-        let mut kept = 0;
-        for place in 0..self.count {
-            if self.waiting[place].low <= limit {
-                self.waiting[kept] = self.waiting[place];
-                kept += 1;
+    fn make_room<L: Lanes>(&mut self, question: &Question, limit: f32) {
+        let (mut kept, mut count) = (Stack::new(), 0);
+        while let Some(waiting) = self.waiting.pop(&mut self.count) {
+            if waiting.low <= limit {
+                kept.push(&mut count, waiting);
             }
         }
-        self.count = kept;
-        if kept == WAITING {
-            self.settle::<L>(limit);
+        (self.waiting, self.count) = (kept, count);
+        if count == WAITING {
+            self.settle::<L>(question, limit);
         }
     }
 
     /// The closest hit, after all leaves have been looked at.
     #[inline(always)]
-    pub(super) fn finish<L: Lanes>(&mut self, limit: f32) -> Option<MeshHit> {
+    pub(super) fn finish<L: Lanes>(&mut self, question: &Question, limit: f32) -> Option<MeshHit> {
         // As with most rays that hit: what is met need not be written down to be compared with another.
         if self.count == 1 && self.best.is_none() {
-            let Waiting { block, lane, .. } = self.waiting[0];
-            let (block, lane) = (&self.blocks[block as usize], lane as usize);
-            let meeting = self.space.meet_surely::<L>(&block.corners_on(self.space.axes(), lane))?;
+            let Waiting { block, lane, .. } = self.waiting.pop(&mut self.count)?;
+            let (block, lane) = (&question.blocks[block as usize], lane as usize);
+            let meeting = question.space.meet_surely::<L>(&block.corners_on(question.space.axes(), lane))?;
             let is_in_range = meeting.is_within(self.t_min, self.t_max);
             return is_in_range.then(|| MeshHit::new(number(block.triangles[lane & (WIDTH - 1)]), meeting));
         }
-        self.settle::<L>(limit);
+        self.settle::<L>(question, limit);
         self.best.map(|(triangle, meeting)| MeshHit::new(triangle, meeting))
     }
 }
@@ -179,12 +184,13 @@ impl Work for Closest<'_> {
             Approach::Plain(probe) => probe,
             Approach::Strange(slabs) => return closest_strange(mesh, space, &slabs, t_min, t_max),
         };
-        let mut search = Search::new(&mesh.blocks, space, t_min, t_max);
-        let (boxes, triangles) = (BoxRay::<L::Eight>::new(probe), BlockRay::<L::Eight>::new(probe, &search.space));
-        let limit = mesh.tree.nearest(&boxes, probe.limit(search.t_max), |leaf, limit| {
-            search.leaf::<L>(&triangles, probe, leaf, limit);
+        let question = Question { blocks: &mesh.blocks, space, measure: probe.measure };
+        let mut search = Search::new(t_min, t_max);
+        let (boxes, triangles) = (BoxRay::<L::Eight>::new(probe), BlockRay::<L::Eight>::new(probe, space));
+        let limit = mesh.tree.nearest(&boxes, question.measure.limit(t_max), |leaf, limit| {
+            search.leaf::<L>(&question, &triangles, leaf, limit);
         });
-        search.finish::<L>(limit)
+        search.finish::<L>(&question, limit)
     }
 }
 
@@ -197,16 +203,17 @@ pub(super) fn closest(mesh: &TriangleMesh, ray: &Ray, t_min: f64, t_max: f64) ->
 /// The same, all in `f64`.
 #[cold]
 fn closest_strange(mesh: &TriangleMesh, space: &RaySpace, slabs: &Slabs, t_min: f64, t_max: f64) -> Option<MeshHit> {
-    let mut search = Search::new(&mesh.blocks, space, t_min, t_max);
+    let question = Question { blocks: &mesh.blocks, space, measure: Probe::NOTHING.measure };
+    let mut search = Search::new(t_min, t_max);
     // It never breaks, so there is nothing to know from its end.
     let _ = mesh.tree.each_strange(slabs, t_min, t_max, &mut |leaf| {
         let block = &mesh.blocks[leaf as usize];
         for lane in filled(block) {
-            search.decide::<f64>(block, lane);
+            search.decide::<f64>(&question, block, lane);
         }
         ControlFlow::Continue(())
     });
-    search.finish::<f64>(0.0)
+    search.finish::<f64>(&question, 0.0)
 }
 
 /// The lanes of a block that have a triangle.
@@ -267,8 +274,8 @@ impl Work for Any<'_> {
             Approach::Strange(_) => return each(mesh, ray, t_min, t_max, |_| ControlFlow::Break(())).is_break(),
         };
         let (boxes, triangles) = (BoxRay::<L::Eight>::new(probe), BlockRay::<L::Eight>::new(probe, space));
-        let limit = probe.limit(t_max);
-        let surely_before = L::Eight::splat(probe.surely_before(t_max));
+        let limit = probe.measure.limit(t_max);
+        let surely_before = L::Eight::splat(probe.measure.surely_before(t_max));
         let visit = |leaf: u32| {
             let block = &mesh.blocks[leaf as usize];
             let is_met = is_met_in::<L>(block, &triangles, space, L::Eight::splat(limit), surely_before, t_min, t_max);
@@ -319,7 +326,7 @@ impl<V: FnMut(MeshHit) -> ControlFlow<()>> Work for Each<'_, '_, V> {
     fn run<L: Lanes>(self) -> ControlFlow<()> {
         let Self { mesh, probe, once } = self;
         let (boxes, triangles) = (BoxRay::<L::Eight>::new(probe), BlockRay::<L::Eight>::new(probe, once.space));
-        let limit = probe.limit(once.t_max);
+        let limit = probe.measure.limit(once.t_max);
         mesh.tree.each(&boxes, limit, |leaf| {
             let block = &mesh.blocks[leaf as usize];
             let Some(verdict) = triangles.look(block, L::Eight::splat(limit)) else { return ControlFlow::Continue(()) };

@@ -215,11 +215,13 @@ fn the_filter_says_nothing_that_is_not_so_and_much() {
                         let said = said.iter().find(|said| said.0 == id);
                         match (truth, said) {
                             (Some(meeting), Some((_, true, low, high))) => {
-                                let s = (meeting.t - probe.start) * probe.scale;
+                                let s = (meeting.t - probe.measure.start) * probe.measure.scale;
                                 assert!(f64::from(*low) <= s && s <= f64::from(*high), "{low} {s} {high} {ray:?}");
                                 sure += 1;
                             }
-                            (Some(meeting), None) => assert!(meeting.t <= probe.start, "{id} is missed by {ray:?}"),
+                            (Some(meeting), None) => {
+                                assert!(meeting.t <= probe.measure.start, "{id} is missed by {ray:?}")
+                            }
                             (None, Some((_, true, ..))) => panic!("{id} is not met by {ray:?}"),
                             _ => {}
                         }
@@ -250,7 +252,7 @@ fn a_filter_without_tolerance_is_caught() {
                     let said = said.iter().find(|said| said.0 == *id);
                     match space.meet::<f64>(mesh.corners(*id)) {
                         None => said.is_some_and(|said| said.1),
-                        Some(meeting) => said.is_none() && meeting.t > probe.start,
+                        Some(meeting) => said.is_none() && meeting.t > probe.measure.start,
                     }
                 })
                 .count();
