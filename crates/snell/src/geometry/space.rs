@@ -4,7 +4,7 @@ use snell_math::{Bounds3, Normal3, Point3, Ray, Vector3};
 
 use super::placed::Placement;
 use super::{InnerHit, Touching};
-use crate::accel::{BuildError, BuildQuality, Candidate, WideBvh};
+use crate::accel::{BuildError, BuildQuality, Candidate, Hull, WideBvh};
 use crate::shape::{Plane, Shape, Sphere, SpherePairs, SurfacePoint};
 use crate::texture::RELATIVE_INSET;
 
@@ -85,6 +85,23 @@ fn meet(
     hit.map(|hit| touching.candidate(hit.into(), is_opaque()))
 }
 
+/// What a primitive lies in, where it is round and stands in its space as it is.
+pub fn hull_of(primitive: &Primitive, shapes: &[Shape]) -> Hull {
+    match primitive {
+        Primitive::Sphere(Sphere { center, radius }) => Hull::Ball { center: *center, radius: *radius },
+        Primitive::Shape { shape, placement: NONE } => match &shapes[*shape as usize] {
+            Shape::Cylinder(frustum) | Shape::Cone(frustum) => {
+                let (frame, length) = frustum.frame_and_length();
+                let (thin, slope) = frustum.radius_and_slope();
+                let half_axis = frame.z * (0.5 * length);
+                Hull::Tube { center: frame.origin + half_axis, half_axis, radius: thin + slope * length }
+            }
+            _ => Hull::Unknown,
+        },
+        _ => Hull::Unknown,
+    }
+}
+
 /// Primitives with their hierarchy: bounded ones first, then those without bounds, such as planes.
 #[derive(Debug)]
 pub struct Space {
@@ -115,16 +132,13 @@ impl Space {
         quality: BuildQuality,
     ) -> Result<Self, BuildError> {
         let bounded = bounds.len();
+        let hulls: Vec<Hull> = primitives[..bounded].iter().map(|primitive| hull_of(primitive, &shapes)).collect();
+        let bvh = WideBvh::with_quality(&bounds, quality)?.with_hulls(&hulls);
         // All of them, if they all are plain spheres.
         let spheres: Vec<Sphere> = primitives[..bounded]
             .iter()
             .map_while(|primitive| if let Primitive::Sphere(sphere) = primitive { Some(*sphere) } else { None })
             .collect();
-        let mut bvh = WideBvh::with_quality(&bounds, quality)?;
-        if spheres.len() == bounded {
-            let balls: Vec<(Point3, f64)> = spheres.iter().map(|sphere| (sphere.center, sphere.radius)).collect();
-            bvh = bvh.with_balls(&balls);
-        }
         let are_spheres = spheres.len() == bounded && bounded <= HANDFUL_OF_SPHERES;
         let handful = if are_spheres { SpherePairs::new(&spheres) } else { SpherePairs::default() };
         let first_alone = if !are_spheres && bounded <= HANDFUL { 0 } else { bounded };

@@ -1,5 +1,6 @@
 //! All questions against the plainest way to answer them: every object in a scene of its own, asked one after the other.
 
+mod hulls;
 mod packets;
 
 use snell_math::{Point3, Ray, Rgb, Transform, Vector3};

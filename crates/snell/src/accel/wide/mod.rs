@@ -12,9 +12,9 @@
 //!
 //! Units and spaces: as [`super::bvh`].
 
-mod balls;
 mod collapse;
 mod group;
+mod hulls;
 mod memory;
 mod path;
 mod primitives;
@@ -30,6 +30,7 @@ mod validate;
 #[cfg(test)]
 mod tests;
 
+pub use hulls::Hull;
 pub use primitives::{Candidate, WideBvh};
 pub use validate::WideDefect;
 

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use snell_math::lanes::{Eight, InstructionSet, Lanes, WIDTH, Work, dispatch};
 use snell_math::{Bounds3, Point3, Ray};
 
-use super::balls::{BallBlock, BallRay};
+use super::hulls::{BallRay, Hull, Hulls};
 use super::shared::{NONE, Visited, number};
 use super::{Approach, BoxRay, Probe, WideTree, take_lane};
 use crate::accel::bvh::{BuildError, BuildOptions, BuildQuality, Bvh};
@@ -51,8 +51,8 @@ pub struct WideBvh {
     pub(super) tree: WideTree,
     /// Numbers of primitives, see [`WideTree::new`].
     pub(super) leaves: Vec<[u32; WIDTH]>,
-    /// For each leaf its balls, where all primitives are balls; else none.
-    pub(super) balls: Vec<BallBlock>,
+    /// What primitives lie in.
+    pub(super) hulls: Hulls,
     /// By what boxes are tested.
     set: InstructionSet,
 }
@@ -78,19 +78,18 @@ impl WideBvh {
     /// The same primitives, eight children a node.
     pub fn from_binary(bvh: &Bvh) -> Self {
         let (tree, leaves) = WideTree::new(bvh);
-        Self { tree, leaves, balls: Vec::new(), set: InstructionSet::best() }
+        Self { tree, leaves, hulls: Hulls::default(), set: InstructionSet::best() }
     }
 
-    /// The same hierarchy, whose primitives are balls of these centres and radii. Queries with rays then leave out most of those
-    /// whose boxes are met and that are not; nothing else changes, where a ball is met within its radius only, up to a few
-    /// roundings of `f64`.
+    /// The same hierarchy, with what its primitives lie in, one for each. Queries with rays then leave out most of those whose boxes
+    /// are met and that are not; nothing else changes, where a primitive is met within its hull only, up to a few roundings of
+    /// `f64`.
     ///
     /// # Panics
-    /// Where there is a primitive without a ball.
+    /// Where there is a primitive without a hull.
     #[must_use]
-    pub fn with_balls(self, balls: &[(Point3, f64)]) -> Self {
-        let balls = self.leaves.iter().map(|entries| BallBlock::new(entries, balls)).collect();
-        Self { balls, ..self }
+    pub fn with_hulls(self, hulls: &[Hull]) -> Self {
+        Self { hulls: Hulls::new(&self.leaves, hulls), ..self }
     }
 
     /// The same hierarchy, whose boxes are tested by other instructions; nothing else changes.
@@ -111,7 +110,7 @@ impl WideBvh {
 
     /// The memory of nodes and leaves, in bytes.
     pub fn bytes(&self) -> usize {
-        self.tree.bytes() + size_of_val(self.leaves.as_slice()) + size_of_val(self.balls.as_slice())
+        self.tree.bytes() + size_of_val(self.leaves.as_slice()) + self.hulls.bytes()
     }
 
     /// The closest primitive on a ray from its origin to `t_max`, both included, and what its test returned.
@@ -217,8 +216,8 @@ const ALL: u32 = (1 << WIDTH) - 1;
 /// The lanes of a leaf that a ray may meet before the limit.
 #[inline(always)]
 fn candidates<F: Eight>(bvh: &WideBvh, ray: &BallRay<F>, leaf: u32, limit: f32) -> u32 {
-    match bvh.balls.get(leaf as usize) {
-        Some(block) => ray.look(block, F::splat(limit)),
+    match bvh.hulls.of(leaf) {
+        Some(hulls) => ray.look(hulls, F::splat(limit)),
         None => ALL,
     }
 }

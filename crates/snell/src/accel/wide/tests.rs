@@ -184,6 +184,10 @@ fn balls(random: &mut Random, count: usize, scale: f64, far: f64) -> (Vec<(Point
     (balls, bounds)
 }
 
+fn hulls(balls: &[(Point3, f64)]) -> Vec<Hull> {
+    balls.iter().map(|&(center, radius)| Hull::Ball { center, radius }).collect()
+}
+
 /// A ray at a ball: at its middle, its rim, or past it; from near or far.
 fn ray_at(i: usize, (center, radius): (Point3, f64), scale: f64, random: &mut Random) -> Ray {
     let along = random.vector().normalize();
@@ -205,7 +209,7 @@ proptest! {
         let mut random = Random(seed);
         let (balls, bounds) = balls(&mut random, count, scale, far);
         let primitives: Vec<Primitive> = balls.iter().map(|(center, radius)| Primitive::Sphere(*center, *radius)).collect();
-        let ways: Vec<WideBvh> = every_way(&bounds).into_iter().map(|bvh| bvh.with_balls(&balls)).collect();
+        let ways: Vec<WideBvh> = every_way(&bounds).into_iter().map(|bvh| bvh.with_hulls(&hulls(&balls))).collect();
         for i in 0..200 {
             let ray = ray_at(i, balls[random.index(count)], scale, &mut random);
             let t_max = if i % 3 == 0 { scale / ray.direction.length() } else { f64::INFINITY };
@@ -229,7 +233,7 @@ fn smaller_balls_are_missed() {
     let (balls, bounds) = balls(&mut random, 60, 1.0, 0.0);
     let smaller: Vec<(Point3, f64)> = balls.iter().map(|(center, radius)| (*center, 0.999 * radius)).collect();
     let bvh = WideBvh::build(&bounds).expect("finite boxes");
-    let [bad, good] = [smaller, balls.clone()].map(|balls| bvh.clone().with_balls(&balls));
+    let [bad, good] = [smaller, balls.clone()].map(|balls| bvh.clone().with_hulls(&hulls(&balls)));
     let (mut missed, mut hits, mut visited) = (0, 0, 0);
     for i in 0..1000 {
         let ray = ray_at(i % 10, balls[i % 60], 1.0, &mut random);

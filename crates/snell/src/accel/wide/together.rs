@@ -2,8 +2,8 @@
 
 use snell_math::lanes::{Bits, Eight, Floats, LaneVector, Lanes, WIDTH};
 
-use super::balls::BallLines;
 use super::group::{Finder, Seeker, column_of};
+use super::hulls::BallLines;
 use super::probe::{Measure, Probe, widened_measure};
 use super::probes::BoxLines;
 use super::shared::{NONE, number};
@@ -132,21 +132,21 @@ impl<'a> Leaves<'a> {
     #[inline(always)]
     fn prefetch<L: Lanes>(&self, leaf: u32) {
         L::Eight::prefetch(&self.bvh.leaves[leaf as usize]);
-        if let Some(block) = self.bvh.balls.get(leaf as usize) {
-            L::Eight::prefetch(block);
+        if let Some(hulls) = self.bvh.hulls.of(leaf) {
+            hulls.prefetch::<L::Eight>();
         }
     }
 
     /// For each ray a byte: the primitives of a leaf that it may meet before the limit; and all of them.
     #[inline(always)]
     fn candidates<L: Lanes>(&self, leaf: u32, rays: Bits, limits: &[f32; WIDTH]) -> (u64, u32) {
-        let Some(block) = self.bvh.balls.get(leaf as usize) else { return (u64::MAX, 0xFF) };
+        let Some(hulls) = self.bvh.hulls.of(leaf) else { return (u64::MAX, 0xFF) };
         let (mut by_ray, mut any) = (0, 0);
         let mut rest = rays.mask();
         while rest != 0 {
             let lane = take_lane(&mut rest);
             let ray = self.balls.spread::<L::Eight>(lane);
-            let met = ray.look(block, L::Eight::splat(limits[lane]));
+            let met = ray.look(hulls, L::Eight::splat(limits[lane]));
             by_ray |= u64::from(met) << (8 * lane);
             any |= met;
         }
