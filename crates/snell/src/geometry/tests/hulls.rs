@@ -31,7 +31,7 @@ fn hulls(shapes: &[Shape]) -> Vec<Hull> {
 fn ray(rng: &mut TestRng, hull: Hull, i: usize, scale: f64) -> Ray {
     let Hull::Tube { center, half_axis, radius } = hull else { panic!("a frustum lies in a tube") };
     let at = center + half_axis * rng.range(-1.0, 1.0);
-    let along = if i % 4 == 0 { half_axis.normalize() + rng.vector(1e-3) } else { rng.direction() };
+    let along = if i.is_multiple_of(4) { half_axis.normalize() + rng.vector(1e-3) } else { rng.direction() };
     let aside = along.cross(half_axis).try_normalize().unwrap_or_else(|| rng.direction());
     let past = *rng.pick(&[0.0, 0.9, 0.999_999, 1.000_001]) * radius;
     let far = *rng.pick(&[0.0, 1.0, 100.0, 1e6]) * scale;
