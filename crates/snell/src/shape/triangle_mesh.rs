@@ -179,8 +179,8 @@ impl TriangleMesh {
         queries::closest(self, ray, t_min, t_max)
     }
 
-    /// [`TriangleMesh::intersect`] of many rays, each with its own largest t: the same hits, sooner where the mesh is larger than
-    /// the processor's caches. The rays may be in any order and of any kind.
+    /// [`TriangleMesh::intersect`] of many rays, each with its own largest t: the same hits, sooner where neighbours among them go
+    /// much the same way, or the mesh is larger than the processor's caches. The rays may be in any order and of any kind.
     ///
     /// ```
     /// # use snell::shape::triangle_mesh::TriangleMesh;

@@ -1,15 +1,16 @@
-//! Many rays and a mesh: sixteen in flight where the mesh is larger than the caches, one by one else.
+//! Many rays and a mesh: eight side by side where neighbours go the same way; else sixteen in flight where the mesh is larger than the
+//! caches, and one by one where it is not.
 //!
 //! In flight, each ray does a step, one node or one leaf, and asks for the memory that its next step needs; then the next ray has
 //! its turn. The steps are those of a ray by itself, in the same order, so the hits are the same.
 
 use snell_math::Ray;
-use snell_math::lanes::{Eight, Lanes, Work, dispatch};
+use snell_math::lanes::{Bits, Eight, Lanes, WIDTH, Work, dispatch};
 
 use super::blocks::{BlockLine, BlockRay};
 use super::queries::{Question, Search};
 use super::watertight::RaySpace;
-use super::{MeshHit, TriangleMesh};
+use super::{MeshHit, RayRow, TriangleMesh};
 use crate::accel::wide::{Approach, BoxLine, BoxRay, Measure, Path, Probe};
 
 /// How many rays are in flight: enough to wait for memory together, few enough for the nearest cache to hold what is known of them.
@@ -132,13 +133,73 @@ impl Work for Many<'_, '_> {
 
 /// See [`TriangleMesh::intersect_many`].
 pub(super) fn closest(mesh: &TriangleMesh, rays: &[Ray], t_min: f64, t_max: &[f64], hits: &mut [Option<MeshHit>]) {
-    if mesh.tree.bytes() + size_of_val(mesh.blocks.as_slice()) < LARGE {
-        for ((ray, t_max), hit) in rays.iter().zip(t_max).zip(hits) {
-            *hit = mesh.intersect(ray, t_min, *t_max);
-        }
-        return;
+    if t_min == 0.0 && are_coherent(rays) {
+        side_by_side(mesh, rays, t_max, hits);
+    } else if mesh.tree.bytes() + size_of_val(mesh.blocks.as_slice()) >= LARGE {
+        in_flight(mesh, rays, t_min, t_max, hits);
+    } else {
+        one_by_one(mesh, rays, t_min, t_max, hits);
     }
-    in_flight(mesh, rays, t_min, t_max, hits);
+}
+
+fn one_by_one(mesh: &TriangleMesh, rays: &[Ray], t_min: f64, t_max: &[f64], hits: &mut [Option<MeshHit>]) {
+    for ((ray, t_max), hit) in rays.iter().zip(t_max).zip(hits) {
+        *hit = mesh.intersect(ray, t_min, *t_max);
+    }
+}
+
+/// Whether neighbours go much the same way, as far as some of them show: less than 15 degrees apart, in three of four rows of eight.
+fn are_coherent(rays: &[Ray]) -> bool {
+    let rows = rays.chunks_exact(WIDTH);
+    let stride = (rows.len() / 16).max(1);
+    let (mut alike, mut asked) = (0, 0);
+    for row in rows.step_by(stride) {
+        let [first, last] = [row[0].direction, row[WIDTH - 1].direction];
+        let cosine = first.dot(last) / (first.length() * last.length());
+        alike += usize::from(cosine > 0.966);
+        asked += 1;
+    }
+    asked > 0 && alike * 4 >= asked * 3
+}
+
+/// The same from t > 0 on, eight side by side whatever way they go.
+pub(super) fn side_by_side(mesh: &TriangleMesh, rays: &[Ray], t_max: &[f64], hits: &mut [Option<MeshHit>]) {
+    dispatch(mesh.set, SideBySide { mesh, rays, t_max, hits });
+}
+
+/// Rays to be traced eight by eight.
+struct SideBySide<'a, 'b> {
+    mesh: &'a TriangleMesh,
+    rays: &'b [Ray],
+    t_max: &'b [f64],
+    hits: &'b mut [Option<MeshHit>],
+}
+
+impl Work for SideBySide<'_, '_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { mesh, rays, t_max, hits } = self;
+        // One lane has no sides.
+        if L::COUNT < WIDTH {
+            return one_by_one(mesh, rays, 0.0, t_max, hits);
+        }
+        let rows = rays.chunks(WIDTH).zip(t_max.chunks(WIDTH)).zip(hits.chunks_mut(WIDTH));
+        for ((some, limits), hits) in rows {
+            let (mut rays, mut t_max, mut found) = ([some[0]; WIDTH], [0.0; WIDTH], [None; WIDTH]);
+            let (mut origin, mut direction) = ([[0.0; WIDTH]; 3], [[0.0; WIDTH]; 3]);
+            rays[..some.len()].copy_from_slice(some);
+            t_max[..some.len()].copy_from_slice(limits);
+            for lane in 0..WIDTH {
+                for axis in 0..3 {
+                    (origin[axis][lane], direction[axis][lane]) = (rays[lane].origin[axis], rays[lane].direction[axis]);
+                }
+            }
+            let row = RayRow { rays: &rays, origin: &origin, direction: &direction };
+            mesh.intersect_together::<L>(row, Bits::first(some.len()), &t_max, &mut found);
+            hits.copy_from_slice(&found[..some.len()]);
+        }
+    }
 }
 
 /// The same, in flight whatever the size.

@@ -276,10 +276,10 @@ fn triangles_of_several_leaves_are_met_once() {
     check(&twice, 2000, 1.0, &mut random);
 }
 
-/// Rays in flight find what rays by themselves do, by every instruction set: more rays than are in flight, some of which miss
+/// Rays in flight and side by side find what rays by themselves do, by every instruction set: more rays than are in flight, some of which miss
 /// everything, are broken, or are odd.
 #[test]
-fn rays_in_flight_find_the_same() {
+fn many_rays_find_the_same() {
     let mut random = Random(11);
     for kind in KINDS {
         for (count, scale) in [(3, 1.0), (200, 1.0), (200, 1e6), (40, 1e-20)] {
@@ -302,6 +302,11 @@ fn rays_in_flight_find_the_same() {
                     hits.fill(None);
                     mesh.intersect_many(&rays, t_min, &t_max, &mut hits);
                     assert_eq!(hits, expected, "{kind:?} {set:?}");
+                    if t_min == 0.0 {
+                        hits.fill(None);
+                        many::side_by_side(&mesh, &rays, &t_max, &mut hits);
+                        assert_eq!(hits, expected, "{kind:?} {set:?}");
+                    }
                 }
             }
         }

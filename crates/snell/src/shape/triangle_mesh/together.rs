@@ -28,8 +28,11 @@ impl Ready {
     #[inline(always)]
     fn new<L: Lanes>(mesh: &TriangleMesh, row: &RayRow, active: Bits, t_max: &[f64; WIDTH]) -> Self {
         let (origin, direction) = (LaneVector::<L>::load(row.origin, 0), LaneVector::load(row.direction, 0));
-        let group = Group::new(&mesh.tree, origin, direction, active, t_max);
-        let mut ready = Self { group, spaces: [RaySpace::NOTHING; WIDTH], triangles: [BlockLine::NOTHING; WIDTH] };
+        let mut ready = Self {
+            group: Group::new(&mesh.tree, origin, direction, active, t_max),
+            spaces: [RaySpace::NOTHING; WIDTH],
+            triangles: [BlockLine::NOTHING; WIDTH],
+        };
         for lane in ready.group.plain.lanes() {
             match RaySpace::new(&row.rays[lane]) {
                 Some(space) => {
