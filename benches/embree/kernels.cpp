@@ -338,7 +338,7 @@ void measure(char** words) {
     for (const char* set : {"primary", "bounce1", "bounce2"})
         measure_set(set, read_rays(prefix + "." + set), rounds, false, single);
     measure_set("shadow", read_rays(prefix + ".shadow"), rounds, true, any);
-    measure_set("primary16", read_rays(prefix + ".primary"), rounds, false, packets);
+    measure_set("primary_queue", read_rays(prefix + ".primary"), rounds, false, packets);
     release(built);
 }
 

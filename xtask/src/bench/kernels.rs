@@ -9,7 +9,8 @@ use std::path::Path;
 
 use super::embree::Embree;
 use super::mesh_file::Mesh;
-use super::report::{Section, cell};
+use super::report::{Bar, Section, Verdict, cell};
+use super::statistics::median;
 use super::vectors::Vector;
 use super::{Bench, models};
 use crate::process;
@@ -52,6 +53,10 @@ const LANDSCAPE: View = View {
     lift: 5e-4,
 };
 
+/// What Embree is called in each of its modes.
+const DEFAULT: &str = "Embree";
+const ROBUST: &str = "Embree, robust";
+
 /// Rays of a set are the square of this.
 const EDGE: u32 = 512;
 
@@ -61,7 +66,8 @@ const COLUMNS: &[(&str, &str)] = &[
     ("bounce1_mrays_per_cpu_second", "bounce1"),
     ("bounce2_mrays_per_cpu_second", "bounce2"),
     ("shadow_mrays_per_cpu_second", "shadow"),
-    ("primary16_mrays_per_cpu_second", "primary, packets"),
+    ("primary_queue_mrays_per_cpu_second", "primary, packets"),
+    ("bounce2_queue_mrays_per_cpu_second", "bounce2, in queues"),
     ("build_mtriangles_per_cpu_second", "build, per CPU second"),
     ("build_mtriangles_per_second_2_threads", "build, 2 threads, per second"),
     ("bytes_per_triangle", "bytes a triangle"),
@@ -101,27 +107,36 @@ pub fn run(bench: &Bench) -> Result<Section, String> {
         let triangles = mesh.triangles.len();
         drop(mesh);
         let prefix = bench.scratch.join(name);
-        let mut measured = Vec::new();
         if let Some(embree) = &embree {
             embree.make_rays(&file, &prefix, EDGE, view)?;
         }
-        if ours {
-            // Where ours fails, Embree's figures are worth having all the same.
-            match measure_ours(&file, &prefix, embree.is_some(), bench.runs) {
-                Ok(figures) => measured.push(("Snell", figures)),
-                Err(reason) => println!("{name}: {reason}"),
+        let mut measured: Vec<(&str, Vec<Figures>)> = Vec::new();
+        let mut keep = |program, figures| match measured.iter_mut().find(|(name, _)| *name == program) {
+            Some((_, rounds)) => rounds.push(figures),
+            None => measured.push((program, vec![figures])),
+        };
+        // The programs take turns, so that the machine's mood is the same for all.
+        for _ in 0..bench.runs {
+            if ours {
+                // Where ours fails, Embree's figures are worth having all the same.
+                match measure_ours(&file, &prefix, embree.is_some()) {
+                    Ok(figures) => keep("Snell", figures),
+                    Err(reason) => println!("{name}: {reason}"),
+                }
+            }
+            if let Some(embree) = &embree {
+                for (program, mode) in [(DEFAULT, "default"), (ROBUST, "robust")] {
+                    keep(program, embree.measure(&file, &prefix, mode, 1)?);
+                }
             }
         }
-        if let Some(embree) = &embree {
-            for (program, mode) in [("Embree", "default"), ("Embree, robust", "robust")] {
-                measured.push((program, embree.measure(&file, &prefix, mode, bench.runs)?));
-            }
-        }
+        let measured: Vec<(&str, Figures)> =
+            measured.into_iter().map(|(program, rounds)| (program, medians(&rounds))).collect();
+        section.verdicts.extend(verdicts(name, &measured));
         for (program, figures) in &measured {
-            let find = |key: &str| figures.iter().find(|(name, _)| name == key).map(|&(_, value)| value);
             let _ = write!(section.text, "| {name} | {triangles} | {program} |");
             for (key, _) in COLUMNS {
-                let _ = write!(section.text, " {} |", cell(find(key), 1));
+                let _ = write!(section.text, " {} |", cell(find(figures, key), 1));
             }
             section.text.push('\n');
             for (key, value) in figures.iter().filter(|(key, value)| is_worth_telling(key, *value)) {
@@ -135,16 +150,65 @@ pub fn run(bench: &Bench) -> Result<Section, String> {
     Ok(section)
 }
 
+/// What a program printed, each with its key.
+type Figures = Vec<(String, f64)>;
+
+fn find(figures: &[(String, f64)], key: &str) -> Option<f64> {
+    figures.iter().find(|(name, _)| name == key).map(|&(_, value)| value)
+}
+
+/// The median of each figure over the rounds.
+fn medians(rounds: &[Figures]) -> Figures {
+    let keys = rounds.first().into_iter().flatten().map(|(key, _)| key);
+    keys.filter_map(|key| {
+        let mut values: Vec<f64> = rounds.iter().filter_map(|figures| find(figures, key)).collect();
+        Some((key.clone(), median(&mut values)?))
+    })
+    .collect()
+}
+
+/// What is asked of a scene's figures, those that there are.
+fn verdicts(scene: &str, measured: &[(&str, Figures)]) -> Vec<Verdict> {
+    let of = |program: &str| measured.iter().find(|(name, _)| *name == program).map(|(_, figures)| figures);
+    let (Some(ours), Some(default), Some(robust)) = (of("Snell"), of(DEFAULT), of(ROBUST)) else { return Vec::new() };
+    let ratio = |theirs: &Figures, key: &str| Some(find(ours, key)? / find(theirs, key)?);
+    let mut verdicts = Vec::new();
+    let mut ask = |what: &str, measured: Option<f64>, bar| {
+        let what = format!("{scene}: {what}");
+        verdicts.extend(measured.map(|measured| Verdict { what, measured, bar, unit: "" }));
+    };
+    if ["bunny-room", "dragon-room", "hall"].contains(&scene) {
+        for (theirs, program, bar) in [(robust, "Embree's robust mode", 1.5), (default, "Embree's default mode", 1.1)] {
+            for set in ["primary", "bounce1", "bounce2", "shadow"] {
+                let key = format!("{set}_mrays_per_cpu_second");
+                ask(&format!("{set} rays a second over {program}"), ratio(theirs, &key), Bar::AtLeast(bar));
+            }
+        }
+        let packets = ratio(default, "primary_queue_mrays_per_cpu_second");
+        ask("primary rays in packets a second over Embree", packets, Bar::AtLeast(1.0));
+    }
+    if scene == "landscape" {
+        let queue = find(ours, "bounce2_queue_mrays_per_cpu_second");
+        let single = find(default, "bounce2_mrays_per_cpu_second");
+        let incoherent = queue.zip(single).map(|(queue, single)| queue / single);
+        ask("incoherent rays a second over Embree", incoherent, Bar::AtLeast(2.5));
+    }
+    let build = ratio(default, "build_mtriangles_per_second_2_threads");
+    ask("triangles built a second over Embree, two threads", build, Bar::AtLeast(0.9));
+    ask("bytes a triangle over Embree", ratio(default, "bytes_per_triangle"), Bar::AtMost(1.0));
+    verdicts
+}
+
 /// What a ray visits, and answers that are not those expected, where there are any.
 fn is_worth_telling(key: &str, value: f64) -> bool {
     key.ends_with("_per_ray") || (key.ends_with("_different") && value > 0.0)
 }
 
 /// Runs our program: on the ray sets in files where there are such, else on its own.
-fn measure_ours(mesh: &Path, prefix: &Path, from_files: bool, rounds: usize) -> Result<Vec<(String, f64)>, String> {
+fn measure_ours(mesh: &Path, prefix: &Path, from_files: bool) -> Result<Figures, String> {
     let mut command = process::cargo();
     command.args(["bench", "--quiet", "-p", "snell", "--bench", "kernels", "--", "--mesh"]).arg(mesh);
-    command.args(["--rounds", &rounds.to_string(), "--rays", &(EDGE * EDGE).to_string()]);
+    command.args(["--rounds", "1", "--rays", &(EDGE * EDGE).to_string()]);
     if from_files {
         command.arg("--ray-files").arg(prefix);
     }
@@ -152,7 +216,7 @@ fn measure_ours(mesh: &Path, prefix: &Path, from_files: bool, rounds: usize) -> 
 }
 
 /// The lines `key value` that a program printed, others left out.
-pub fn figures(printed: &str) -> Vec<(String, f64)> {
+pub fn figures(printed: &str) -> Figures {
     let lines = printed.lines().filter_map(|line| line.trim().split_once(' '));
     lines.filter_map(|(key, value)| Some((key.to_owned(), value.trim().parse().ok()?))).collect()
 }
@@ -187,6 +251,18 @@ fn large() -> Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn bars_are_asked_of_the_median_of_the_rounds() {
+        let rounds = [3.0, 9.0, 4.0].map(|value| vec![("bytes_per_triangle".to_owned(), value)]);
+        let ours = medians(&rounds);
+        assert_eq!(ours, [("bytes_per_triangle".to_owned(), 4.0)]);
+        let measured = [("Snell", ours), (DEFAULT, rounds[1].clone()), (ROBUST, rounds[1].clone())];
+        let [verdict] = &verdicts("hall", &measured)[..] else { panic!("one figure that both have") };
+        assert!(verdict.is_met() && verdict.measured == 4.0 / 9.0, "{verdict:?}");
+        // Without a peer nothing is asked.
+        assert_eq!(verdicts("hall", &measured[..1]), []);
+    }
 
     #[test]
     fn figures_are_the_lines_of_a_key_and_a_number() {
