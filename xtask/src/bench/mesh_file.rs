@@ -89,6 +89,19 @@ impl Mesh {
         })
     }
 
+    /// Writes OBJ, whose numbers read back are the same.
+    pub fn write_obj(&self, path: &Path) -> Result<(), String> {
+        self.write(path, |out| {
+            for [x, y, z] in &self.corners {
+                writeln!(out, "v {x} {y} {z}")?;
+            }
+            for [a, b, c] in self.triangles.iter().map(|triangle| triangle.map(|index| index + 1)) {
+                writeln!(out, "f {a} {b} {c}")?;
+            }
+            Ok(())
+        })
+    }
+
     /// Writes a file that declares `name` as POV-Ray's `mesh2`.
     pub fn write_povray(&self, path: &Path, name: &str) -> Result<(), String> {
         self.write(path, |out| {
@@ -150,6 +163,11 @@ mod tests {
         mesh.cuboid([1.0; 3], |at| at);
         let (ply, pov) = (folder.path().join("a.ply"), folder.path().join("a.inc"));
         mesh.write_ply(&ply).expect("it is written");
+        let obj = folder.path().join("a.obj");
+        mesh.write_obj(&obj).expect("it is written");
+        let text = std::fs::read_to_string(obj).expect("it is there");
+        let count = |word: &str| text.lines().filter(|line| line.starts_with(word)).count();
+        assert_eq!((count("v "), count("f ")), (mesh.corners.len(), mesh.triangles.len()));
         mesh.write_povray(&pov, "Box").expect("it is written");
         let bytes = std::fs::read(ply).expect("it is there");
         let head = bytes.windows(11).position(|window| window == b"end_header\n").expect("a head") + 11;

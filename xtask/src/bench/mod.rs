@@ -12,6 +12,7 @@ mod embree;
 mod flip;
 mod instructions;
 mod kernels;
+mod loading;
 mod measure;
 mod mesh_file;
 mod meshes;
@@ -74,6 +75,7 @@ const GROUPS: &[Group] = &[
     },
     Group { name: "spd", summary: "the Standard Procedural Databases at 513 x 513", usual: true, run: spd::run },
     Group { name: "start", summary: "a picture of 4 x 3 pixels", usual: true, run: start::run },
+    Group { name: "loading", summary: "reading a mesh of a million triangles", usual: true, run: loading::run },
     Group { name: "threads", summary: "two threads against one", usual: true, run: threads::run },
     Group {
         name: "kernels",
@@ -162,7 +164,7 @@ pub fn run(mut arguments: Arguments) -> Outcome {
     std::fs::create_dir_all(&scratch).map_err(|error| format!("cannot make {}: {error}", scratch.display()))?;
     let bench = Bench { programs: Programs::find()?, runs, only, bless, scratch };
 
-    let mut verdicts = Vec::new();
+    let mut bars: Vec<(&str, String)> = Vec::new();
     let mut failures = Vec::new();
     for group in GROUPS {
         let asked = if wanted.is_empty() { group.usual } else { wanted.iter().any(|name| name == group.name) };
@@ -174,12 +176,17 @@ pub fn run(mut arguments: Arguments) -> Outcome {
         match (group.run)(&bench) {
             Ok(section) => {
                 keep(&bench, group.name, &section, write_docs)?;
-                verdicts.extend(section.verdicts);
+                bars.push((group.name, report::bars(group.name, &section.verdicts)));
             }
             Err(reason) => failures.push(format!("{}: {reason}", group.name)),
         }
     }
-    summarize(&bench.scratch, &verdicts, write_docs)?;
+    println!("{}{}", report::BARS_HEAD, bars.iter().map(|(_, rows)| rows.as_str()).collect::<String>());
+    println!("Reports are in {}", bench.scratch.display());
+    if write_docs {
+        let names: Vec<&str> = GROUPS.iter().map(|group| group.name).collect();
+        docs::write_bars(&names, &bars, bench.only.is_some())?;
+    }
     if failures.is_empty() { Ok(()) } else { Err(failures.join("\n")) }
 }
 
@@ -198,22 +205,7 @@ fn keep(bench: &Bench, name: &str, section: &Section, write_docs: bool) -> Outco
     );
     println!("\n{text}");
     bench.write(&format!("{name}.md"), text.as_bytes())?;
-    bench.write(&format!("{name}-bars.md"), report::bars(&section.verdicts).as_bytes())?;
     if write_docs { docs::write(name, &text) } else { Ok(()) }
-}
-
-/// Prints the bars of this run; the documentation's table has those of every benchmark's last run.
-fn summarize(scratch: &Path, verdicts: &[Verdict], write_docs: bool) -> Outcome {
-    if !verdicts.is_empty() {
-        println!("{}{}", report::BARS, report::bars(verdicts));
-    }
-    println!("Reports are in {}", scratch.display());
-    if !write_docs {
-        return Ok(());
-    }
-    // What has never run here has no file, and no rows.
-    let rows = GROUPS.iter().map(|group| std::fs::read_to_string(scratch.join(format!("{}-bars.md", group.name))));
-    docs::write("bars", &format!("{}{}", report::BARS, rows.filter_map(Result::ok).collect::<String>()))
 }
 
 /// The groups, one a line.

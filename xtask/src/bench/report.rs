@@ -43,10 +43,10 @@ impl Verdict {
 }
 
 /// The head of the table that [`bars`] fills.
-pub const BARS: &str = "| figure | bar | measured | met |\n|---|---|---|---|\n";
+pub const BARS_HEAD: &str = "| benchmark | figure | bar | measured | met |\n|---|---|---|---|---|\n";
 
-/// A row for each bar.
-pub fn bars(verdicts: &[Verdict]) -> String {
+/// A row for each bar of a benchmark.
+pub fn bars(group: &str, verdicts: &[Verdict]) -> String {
     let mut text = String::new();
     for verdict in verdicts {
         let Verdict { what, measured, unit, .. } = verdict;
@@ -56,7 +56,7 @@ pub fn bars(verdicts: &[Verdict]) -> String {
         };
         let met = if verdict.is_met() { "yes" } else { "no" };
         // Writing into a String cannot fail.
-        let _ = writeln!(text, "| {what} | {bar} | {}{unit} | {met} |", significant(*measured));
+        let _ = writeln!(text, "| {group} | {what} | {bar} | {}{unit} | {met} |", significant(*measured));
     }
     text
 }
@@ -183,8 +183,8 @@ mod tests {
         assert!(verdict(12.0, Bar::AtLeast(12.0)).is_met() && !verdict(11.9, Bar::AtLeast(12.0)).is_met());
         assert!(verdict(0.5, Bar::AtMost(0.5)).is_met() && !verdict(0.6, Bar::AtMost(0.5)).is_met());
         assert!(!verdict(f64::NAN, Bar::AtLeast(0.0)).is_met() && !verdict(f64::NAN, Bar::AtMost(0.0)).is_met());
-        let text = bars(&[verdict(2.94, Bar::AtLeast(12.0))]);
+        let text = bars("pictures", &[verdict(2.94, Bar::AtLeast(12.0))]);
         assert!(text.contains("| speed | at least 12.0x | 2.94x | no |"), "{text}");
-        assert_eq!(bars(&[]), "");
+        assert_eq!(bars("pictures", &[]), "");
     }
 }
