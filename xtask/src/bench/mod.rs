@@ -33,13 +33,13 @@ mod statistics;
 mod threads;
 mod vectors;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::Outcome;
 use crate::arguments::Arguments;
 use crate::process;
 use programs::Programs;
-use report::{Section, Verdict, describe_machine};
+use report::{Section, describe_machine};
 
 /// Counted runs of each program unless told.
 const RUNS: usize = 5;
