@@ -3,7 +3,8 @@
 use std::mem::MaybeUninit;
 
 /// Memory for `PLACES` items, a power of two, so that an index is held in range by a mask. It is not cleared: that would cost more
-/// than a short way through a tree. The height is a number beside it, which can so be kept in a register.
+/// than a short way through a tree. The height is a number beside it, which can so be kept in a register: 0
+/// at first, and then what the functions here leave.
 pub struct Stack<T, const PLACES: usize>([MaybeUninit<T>; PLACES]);
 
 impl<T: Copy, const PLACES: usize> Stack<T, PLACES> {

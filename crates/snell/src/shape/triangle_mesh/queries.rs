@@ -29,7 +29,7 @@ struct Waiting {
     lane: u32,
 }
 
-/// What a ray asks.
+/// What a search needs of the mesh and of its ray.
 #[derive(Clone, Copy)]
 pub(super) struct Question<'a> {
     pub(super) blocks: &'a [TriangleBlock],
@@ -96,7 +96,6 @@ impl Search {
                 self.take_surely::<L>(question, &question.blocks[block as usize], lane as usize);
             }
         }
-        self.count = 0;
     }
 
     /// Looks at a leaf, and lowers the limit by what is found.
@@ -112,7 +111,8 @@ impl Search {
                 continue;
             }
             if low[lane] <= 0.0 {
-                // It may lie in front of the range, and must not shorten it.
+                // It may lie in front of the range, and must not shorten it; it surely does where all of it is behind the probe's
+                // origin, since there either the range begins or the mesh.
                 if high[lane] >= 0.0 {
                     self.take_surely::<L>(question, block, lane);
                     *limit = limit.min(question.measure.limit(self.t_max));
@@ -238,6 +238,7 @@ pub(super) fn is_met_in<L: Lanes>(
     if verdict.sure & (zero.lt(verdict.low) & verdict.high.le(surely_before)).mask() != 0 {
         return true;
     }
+    // Those surely in front of the range or behind it are left out.
     let mut sure = verdict.sure & zero.le(verdict.high.lesser(limit - verdict.low)).mask();
     let mut unsure = verdict.unsure;
     while sure != 0 {
