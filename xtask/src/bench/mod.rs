@@ -181,7 +181,10 @@ pub fn run(mut arguments: Arguments) -> Outcome {
             Err(reason) => failures.push(format!("{}: {reason}", group.name)),
         }
     }
-    println!("{}{}", report::BARS_HEAD, bars.iter().map(|(_, rows)| rows.as_str()).collect::<String>());
+    let rows: String = bars.iter().map(|(_, rows)| rows.as_str()).collect();
+    if !rows.is_empty() {
+        println!("{}{rows}", report::BARS_HEAD);
+    }
     println!("Reports are in {}", bench.scratch.display());
     if write_docs {
         let names: Vec<&str> = GROUPS.iter().map(|group| group.name).collect();
