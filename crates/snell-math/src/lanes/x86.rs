@@ -32,6 +32,13 @@ pub fn has_avx512() -> bool {
     })
 }
 
+/// See [`Lanes::product_error`].
+#[expect(clippy::disallowed_methods, reason = "what comes of it is exact, so it is the same number on all machines")]
+#[inline(always)]
+fn fused_error(a: f64, b: f64, product: f64) -> f64 {
+    a.mul_add(b, -product)
+}
+
 /// Eight `f64` in one register of 512 bits.
 #[derive(Clone, Copy, Debug)]
 pub struct Eight512(__m512d);
@@ -126,13 +133,9 @@ impl Lanes for Eight512 {
         // SAFETY: the instructions are there, see the top of the file; every machine with AVX2 counts bits.
         unsafe { with_instructions(work) }
     }
-    #[expect(
-        clippy::disallowed_methods,
-        reason = "what comes of it is exact, so it is the same number on all machines"
-    )]
     #[inline(always)]
     fn product_error(a: f64, b: f64, product: f64) -> f64 {
-        a.mul_add(b, -product)
+        fused_error(a, b, product)
     }
     #[inline(always)]
     fn splat(value: f64) -> Self {
@@ -292,13 +295,9 @@ impl Lanes for Eight256 {
         // SAFETY: the instructions are there, see the top of the file; every machine with AVX2 counts bits.
         unsafe { with_instructions(work) }
     }
-    #[expect(
-        clippy::disallowed_methods,
-        reason = "what comes of it is exact, so it is the same number on all machines"
-    )]
     #[inline(always)]
     fn product_error(a: f64, b: f64, product: f64) -> f64 {
-        a.mul_add(b, -product)
+        fused_error(a, b, product)
     }
     #[inline(always)]
     fn splat(value: f64) -> Self {

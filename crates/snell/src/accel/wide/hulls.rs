@@ -154,7 +154,7 @@ impl TubeBlock {
     }
 }
 
-/// Probes side by side, made ready for balls; see [`BallRay`].
+/// Probes side by side, made ready for balls and tubes; see [`BallRay`].
 pub(super) struct BallLines {
     origin: [[f32; WIDTH]; 3],
     direction: [[f32; WIDTH]; 3],
@@ -202,7 +202,7 @@ fn store<L: Lanes>(v: LaneVector<L>, [x, y, z]: &mut [[f32; WIDTH]; 3]) {
     v.z.to_floats().store(z, 0);
 }
 
-/// A probe in all lanes, for balls.
+/// A probe in all lanes, for balls and tubes.
 #[derive(Clone, Copy)]
 pub(super) struct BallRay<F> {
     origin: [F; 3],

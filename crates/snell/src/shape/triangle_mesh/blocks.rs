@@ -68,7 +68,7 @@ impl TriangleBlock {
     pub(super) fn corners_on(&self, axes: [usize; 3], lane: usize) -> [[f32; 3]; 3] {
         let ([x, y, z], lane) = (axes, lane & (WIDTH - 1));
         let [a, b, c] = &self.corners;
-        // No closure, see `BlockRay::sheared`.
+        // No closure, see `BlockRay::across`.
         [
             [a[x][lane], a[y][lane], a[z][lane]],
             [b[x][lane], b[y][lane], b[z][lane]],

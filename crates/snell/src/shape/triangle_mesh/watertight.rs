@@ -118,7 +118,7 @@ impl RaySpace {
     /// the first, second and third axis.
     #[inline(always)]
     pub(super) fn meet_surely<L: Lanes>(&self, corners: &[[f32; 3]; 3]) -> Option<Meeting> {
-        // No closure, see `BlockRay::sheared`.
+        // No closure, see `BlockRay::across`.
         let (p, q) = (self.shear_ordered(corners[0]), self.shear_ordered(corners[1]));
         self.met::<L>(&p, &q, &self.shear_ordered(corners[2]))
     }
