@@ -2,6 +2,7 @@
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
+use crate::lanes::{LaneVector, Lanes};
 use crate::{Bounds3, Normal3, Point3, Ray, Vector3, portable};
 
 /// An invertible affine map, named destination-from-source where it is stored: `world_from_object`.
@@ -115,6 +116,36 @@ impl Transform {
         Ray { origin: self.inverse_point(ray.origin), direction: self.inverse_vector(ray.direction) }
     }
 
+    /// As [`Transform::point`], a point in each lane, with the same bits.
+    #[inline(always)]
+    pub fn points<L: Lanes>(&self, p: LaneVector<L>) -> LaneVector<L> {
+        product(&self.forward.matrix3, p) + LaneVector::splat(self.forward.translation.to_array())
+    }
+
+    /// As [`Transform::inverse_point`], a point in each lane, with the same bits.
+    #[inline(always)]
+    pub fn inverse_points<L: Lanes>(&self, p: LaneVector<L>) -> LaneVector<L> {
+        product(&self.inverse.matrix3, p) + LaneVector::splat(self.inverse.translation.to_array())
+    }
+
+    /// As [`Transform::inverse_vector`], a displacement in each lane, with the same bits.
+    #[inline(always)]
+    pub fn inverse_vectors<L: Lanes>(&self, v: LaneVector<L>) -> LaneVector<L> {
+        product(&self.inverse.matrix3, v)
+    }
+
+    /// As [`Transform::normal`], a normal in each lane, with the same bits.
+    #[inline(always)]
+    pub fn normals<L: Lanes>(&self, n: LaneVector<L>) -> LaneVector<L> {
+        product(&self.inverse.matrix3.transpose(), n)
+    }
+
+    /// The sums of the magnitudes of what [`Transform::points`] adds, for components that are not negative.
+    #[inline(always)]
+    pub fn terms<L: Lanes>(&self, p: LaneVector<L>) -> LaneVector<L> {
+        product(&self.forward.matrix3.abs(), p) + LaneVector::splat(self.forward.translation.abs().to_array())
+    }
+
     /// The box around the image of a box.
     pub fn bounds(&self, b: &Bounds3) -> Bounds3 {
         if b.is_empty() {
@@ -152,9 +183,18 @@ impl std::ops::Mul for Transform {
     }
 }
 
+/// A matrix times a vector in each lane.
+#[inline(always)]
+fn product<L: Lanes>(matrix: &DMat3, v: LaneVector<L>) -> LaneVector<L> {
+    LaneVector::splat(matrix.x_axis.to_array()) * v.x
+        + LaneVector::splat(matrix.y_axis.to_array()) * v.y
+        + LaneVector::splat(matrix.z_axis.to_array()) * v.z
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lanes::{InstructionSet, WIDTH, Work, dispatch};
 
     #[test]
     fn normals_stay_perpendicular_under_a_skewing_scale() {
@@ -163,6 +203,53 @@ mod tests {
         assert!(map.normal(normal).dot(map.vector(tangent)).abs() < 1e-14);
         // The twin: a normal moved as if it were a vector is wrong.
         assert!(map.vector(normal.as_vector()).dot(map.vector(tangent)).abs() > 1.0);
+    }
+
+    /// A map of eight points, and of the same as vectors and normals.
+    struct Maps<'a>(&'a Transform, &'a [[f64; WIDTH]; 3]);
+
+    impl Work for Maps<'_> {
+        type Output = [[[f64; WIDTH]; 3]; 4];
+        #[inline(always)]
+        fn run<L: Lanes>(self) -> Self::Output {
+            let (map, mut images) = (self.0, [[[0.0; WIDTH]; 3]; 4]);
+            for at in (0..WIDTH).step_by(L::COUNT) {
+                let v = LaneVector::<L>::load(self.1, at);
+                let all = [map.points(v), map.inverse_points(v), map.inverse_vectors(v), map.normals(v)];
+                all.into_iter().zip(&mut images).for_each(|(image, rows)| image.store(rows, at));
+            }
+            images
+        }
+    }
+
+    #[test]
+    fn lanes_have_the_bits_of_one_at_a_time() {
+        let map = Transform::translate(Vector3::new(1e3, -2.0, 0.1))
+            * Transform::rotate(Vector3::new(1.0, 1.0, 3.0), 0.7)
+            * Transform::scale(Vector3::new(1.0, -4.0, 0.3));
+        let rows: [[f64; WIDTH]; 3] =
+            std::array::from_fn(|axis| std::array::from_fn(|lane| portable::sin((7 * lane + axis) as f64) * 100.0));
+        for set in InstructionSet::available() {
+            let images = dispatch(set, Maps(&map, &rows));
+            for lane in 0..WIDTH {
+                let v = rows.map(|row| row[lane]);
+                let expected = [
+                    map.point(v.into()).to_array(),
+                    map.inverse_point(v.into()).to_array(),
+                    map.inverse_vector(v.into()).to_array(),
+                    map.normal(Vector3::from(v).into()).to_array(),
+                ];
+                let found = images.map(|rows| rows.map(|row| row[lane]));
+                assert_eq!(found.map(|v| v.map(f64::to_bits)), expected.map(|v| v.map(f64::to_bits)), "{set:?} {lane}");
+            }
+        }
+    }
+
+    #[test]
+    fn terms_are_as_large_as_what_they_are_of() {
+        let map = Transform::translate(Vector3::new(-5.0, 2.0, 0.1)) * Transform::scale(Vector3::new(1.0, -4.0, 0.5));
+        let terms = map.terms(LaneVector::<f64>::splat([1.0, 2.0, 3.0]));
+        assert_eq!([terms.x, terms.y, terms.z], [6.0, 10.0, 1.6]);
     }
 
     #[test]

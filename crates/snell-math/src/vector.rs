@@ -154,7 +154,7 @@ impl Vector3 {
     #[inline]
     pub fn try_normalize(self) -> Option<Self> {
         let length_squared = self.length_squared();
-        if (1e-190..1e190).contains(&length_squared) {
+        if USUAL_SQUARES.contains(&length_squared) {
             Some(self * (1.0 / length_squared.sqrt()))
         } else {
             self.try_normalize_extreme()
@@ -195,6 +195,9 @@ impl Vector3 {
         )
     }
 }
+
+/// Squared lengths that neither under- nor overflowed on the way.
+pub(crate) const USUAL_SQUARES: std::ops::Range<f64> = 1e-190..1e190;
 
 impl Normal3 {
     /// The scalar product with a vector.

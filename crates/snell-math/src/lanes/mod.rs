@@ -115,9 +115,15 @@ pub trait Lanes:
     /// Numerische Mathematik 18, 1971, where there is no fused operation.
     #[inline(always)]
     fn product_error(a: f64, b: f64, product: f64) -> f64 {
-        let ((a_high, a_low), (b_high, b_low)) = (halves(a), halves(b));
+        a.product_errors(b, product)
+    }
+
+    /// As [`Lanes::product_error`], side by side.
+    #[inline(always)]
+    fn product_errors(self, other: Self, product: Self) -> Self {
+        let ((a_high, a_low), (b_high, b_low)) = (halves(self), halves(other));
         // With zero added, so that no error is +0.
-        a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low) + 0.0
+        a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low) + Self::splat(0.0)
     }
 
     /// Writes some lanes, counted from 0, to the end of rows that are partly full; see [`End`]. What stands behind the new end means
@@ -172,8 +178,8 @@ pub trait Lanes:
 
 /// A number of half the digits, and the rest.
 #[inline(always)]
-fn halves(x: f64) -> (f64, f64) {
-    let scaled = ((1_u64 << 27) + 1) as f64 * x;
+fn halves<L: Lanes>(x: L) -> (L, L) {
+    let scaled = L::splat(((1_u64 << 27) + 1) as f64) * x;
     let high = scaled - (scaled - x);
     (high, x - high)
 }

@@ -244,19 +244,23 @@ fn lanes_go_to_the_end_of_rows() {
     }
 }
 
-/// A product of each lane of two rows, and what its rounding took.
+/// What rounding took from the product of each lane of two rows, one by one and side by side.
 struct Products<'a>(&'a [f64; WIDTH], &'a [f64; WIDTH]);
 
 impl Work for Products<'_> {
-    type Output = [f64; WIDTH];
+    type Output = [[f64; WIDTH]; 2];
     #[inline(always)]
-    fn run<L: Lanes>(self) -> [f64; WIDTH] {
-        let mut errors = [0.0; WIDTH];
+    fn run<L: Lanes>(self) -> [[f64; WIDTH]; 2] {
+        let [mut errors, mut together] = [[0.0; WIDTH]; 2];
         for (lane, error) in errors.iter_mut().enumerate() {
             let (a, b) = (self.0[lane], self.1[lane]);
             *error = L::product_error(a, b, a * b);
         }
-        errors
+        for at in (0..WIDTH).step_by(L::COUNT) {
+            let (a, b) = (L::load(self.0, at), L::load(self.1, at));
+            a.product_errors(b, a * b).store(&mut together, at);
+        }
+        [errors, together]
     }
 }
 
@@ -272,15 +276,16 @@ fn errors_of_products_are_exact_and_the_same_everywhere() {
     let mut inexact = 0;
     for _ in 0..20_000 {
         let (a, b) = (std::array::from_fn(|_| number()), std::array::from_fn(|_| number()));
-        let scalar = dispatch(InstructionSet::Scalar, Products(&a, &b));
+        let [scalar, _] = dispatch(InstructionSet::Scalar, Products(&a, &b));
         for lane in 0..WIDTH {
             let truth = (a[lane] as i128 * b[lane] as i128 - (a[lane] * b[lane]) as i128) as f64;
             assert_eq!(scalar[lane], truth, "{} {}", a[lane], b[lane]);
             inexact += usize::from(truth != 0.0);
         }
         for set in InstructionSet::available() {
-            let errors = dispatch(set, Products(&a, &b));
-            assert_eq!(errors.map(f64::to_bits), scalar.map(f64::to_bits), "{set:?} {a:?} {b:?}");
+            for errors in dispatch(set, Products(&a, &b)) {
+                assert_eq!(errors.map(f64::to_bits), scalar.map(f64::to_bits), "{set:?} {a:?} {b:?}");
+            }
         }
     }
     // The twin: a product alone is not exact.

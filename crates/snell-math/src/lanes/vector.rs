@@ -4,6 +4,7 @@
 use std::ops::{Add, Mul, Neg, Sub};
 
 use super::{Bits, End, Floats, Lanes, WIDTH};
+use crate::vector::USUAL_SQUARES;
 use crate::{Normal3, Point3, Rgb, Vector3};
 
 /// Vectors or points, one in each lane.
@@ -56,6 +57,41 @@ impl<L: Lanes> LaneVector<L> {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
 
+    /// As [`Vector3::cross`].
+    #[inline(always)]
+    #[must_use]
+    pub fn cross(self, other: Self) -> Self {
+        Self {
+            x: self.y * other.z - other.y * self.z,
+            y: self.z * other.x - other.z * self.x,
+            z: self.x * other.y - other.x * self.y,
+        }
+    }
+
+    /// The magnitude of each component.
+    #[inline(always)]
+    #[must_use]
+    pub fn abs(self) -> Self {
+        Self { x: self.x.abs(), y: self.y.abs(), z: self.z.abs() }
+    }
+
+    /// The sum of the components.
+    #[inline(always)]
+    #[must_use]
+    pub fn sum(self) -> L {
+        self.x + self.y + self.z
+    }
+
+    /// Scaled to unit length, as [`Vector3::try_normalize`], and the lanes where it is: those of usual lengths. What stands in the
+    /// others means nothing.
+    #[inline(always)]
+    #[must_use]
+    pub fn normalize_usual(self) -> (Self, Bits) {
+        let length_squared = self.length_squared();
+        let usual = L::splat(USUAL_SQUARES.start).le(length_squared) & length_squared.lt(L::splat(USUAL_SQUARES.end));
+        (self * (L::splat(1.0) / length_squared.sqrt()), usual)
+    }
+
     /// As [`Vector3::length_squared`].
     #[inline(always)]
     #[must_use]
@@ -76,9 +112,7 @@ impl<L: Lanes> LaneVector<L> {
     #[inline(always)]
     #[must_use]
     pub fn try_normalize_or_y(self) -> Self {
-        let length_squared = self.length_squared();
-        let scaled = self * (L::splat(1.0) / length_squared.sqrt());
-        let usual = L::splat(1e-190).le(length_squared) & length_squared.lt(L::splat(1e190));
+        let (scaled, usual) = self.normalize_usual();
         let unusual = L::all().without(usual);
         if unusual.is_empty() { scaled } else { self.normalize_unusual(unusual, scaled) }
     }

@@ -138,6 +138,11 @@ impl Lanes for Eight512 {
         fused_error(a, b, product)
     }
     #[inline(always)]
+    fn product_errors(self, other: Self, product: Self) -> Self {
+        // SAFETY: as above.
+        unsafe { Self(_mm512_fmsub_pd(self.0, other.0, product.0)) }
+    }
+    #[inline(always)]
     fn splat(value: f64) -> Self {
         // SAFETY: as above.
         unsafe { Self(_mm512_set1_pd(value)) }
@@ -298,6 +303,11 @@ impl Lanes for Eight256 {
     #[inline(always)]
     fn product_error(a: f64, b: f64, product: f64) -> f64 {
         fused_error(a, b, product)
+    }
+    #[inline(always)]
+    fn product_errors(self, other: Self, product: Self) -> Self {
+        // SAFETY: as above.
+        unsafe { Self(_mm256_fmsub_pd(self.0, other.0, product.0), _mm256_fmsub_pd(self.1, other.1, product.1)) }
     }
     #[inline(always)]
     fn splat(value: f64) -> Self {
