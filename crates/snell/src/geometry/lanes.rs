@@ -12,8 +12,9 @@ use super::space::{Attributes, NONE, Primitive};
 use super::{Geometry, Hit, InnerHit, LocalPlace, QueryScratch, TOUCHING, Touching};
 use crate::accel::Candidate;
 use crate::interaction::{SolidId, SurfaceInteraction, SurfaceRows};
-use crate::shape::{LanePlanes, LaneRay, LaneSpheres, SurfacePoint};
+use crate::shape::{LanePlanes, LaneRay, LaneSpheres, LaneSurfacePoint, SurfacePoint};
 use crate::task::{QuestionRows, RayRows, column, set_column};
+use crate::texture::Spaces;
 
 /// The nearest hits of eight rays.
 #[derive(Clone, Copy, Debug)]
@@ -197,7 +198,7 @@ impl Geometry {
         nearest.t.store(&mut hits.t, 0);
         // The number −1 becomes NONE: 32 bits, all set.
         hits.primitive = before.map(|index| index as i64 as u32);
-        let group = &RayGroup::new(&rays.origin, &rays.direction);
+        let group = &RayGroup::new(&LaneRay::<L>::load(&rays.origin, &rays.direction, 0));
         let (geometry, space) = (self, &self.world);
         let mut found = Found { key, hits, complex: nearest.complex };
         match index {
@@ -325,7 +326,7 @@ impl Geometry {
                 }
             }) & L::all();
         }
-        let group = &RayGroup::new(&rows.origin, &rows.direction);
+        let group = &RayGroup::new(&LaneRay::<L>::load(&rows.origin, &rows.direction, 0));
         let shadows = &mut Shadows { distance: &rows.distance, any_blocks, hits, scratch };
         match index {
             Some(index) => self.block_together::<L>(space, outer, index, group, active, shadows),
@@ -370,7 +371,7 @@ impl Geometry {
             }
             return;
         }
-        let (mut spheres, mut planes) = (Bits::NONE, Bits::NONE);
+        let (mut spheres, mut planes, mut meshes) = (Bits::NONE, Bits::NONE, Bits::NONE);
         let (mut place, mut normal, mut radius) = ([[0.0; WIDTH]; 3], [[0.0; WIDTH]; 3], [1.0; WIDTH]);
         let mut unplaced = 0;
         if !self.meshes.is_empty() {
@@ -397,14 +398,27 @@ impl Geometry {
                     set_column(&mut place, at + lane, point.to_array());
                     set_column(&mut normal, at + lane, unit.to_array());
                 }
-                _ => {
-                    let origin = Point3::from(column(origin, at + lane));
-                    let ray = Ray::new(origin, Vector3::from(column(direction, at + lane)));
-                    self.surface_one_by_one(&ray, hits, at + lane, surfaces);
+                primitive => {
+                    if L::COUNT == WIDTH
+                        && let Some(material) = self.material_of_plain_mesh(primitive, index, hits.place[lane])
+                    {
+                        meshes |= Bits::lane(lane);
+                        surfaces.material[lane] = material;
+                        continue;
+                    }
+                    self.surface_one_by_one(&ray_of((origin, direction), at + lane), hits, at + lane, surfaces);
                 }
             }
         }
         surfaces.unplaced = Bits(unplaced) & (spheres | planes);
+        if meshes.any() {
+            let unusual = self.surfaces_of_meshes::<L>(&ray, hits, meshes, surfaces);
+            // What asks for no place on an object may have any.
+            surfaces.unplaced |= meshes.without(unusual);
+            for lane in unusual.lanes() {
+                self.surface_one_by_one(&ray_of((origin, direction), lane), hits, lane, surfaces);
+            }
+        }
         if spheres.any() {
             let lanes = LaneSpheres { center: LaneVector::load(&place, at), radius: L::load(&radius, at) };
             surfaces.put_spheres(at, spheres, &lanes, &ray, t);
@@ -413,6 +427,49 @@ impl Geometry {
             let lanes = LanePlanes { point: LaneVector::load(&place, at), normal: LaneVector::load(&normal, at) };
             surfaces.put_planes(at, planes, &lanes, &ray, t);
         }
+    }
+
+    /// The material of a hit with a mesh of the world, where all that is asked of the hit is where it is and its normals.
+    #[inline(always)]
+    fn material_of_plain_mesh(&self, primitive: &Primitive, index: u32, place: LocalPlace) -> Option<u32> {
+        let Primitive::Mesh { mesh, .. } = primitive else { return None };
+        let material = self.material_of(primitive, &self.world.attributes[index as usize], NONE, place);
+        let Spaces { object, uv, .. } = self.spaces[material as usize];
+        (!object && !uv && !self.meshes[*mesh as usize].has_colors()).then_some(material)
+    }
+
+    /// Works out hits with meshes of the world; returns the lanes that have to be worked out one by one.
+    #[inline(always)]
+    fn surfaces_of_meshes<L: Lanes>(
+        &self,
+        ray: &LaneRay<L>,
+        hits: &HitRows,
+        meshes: Bits,
+        surfaces: &mut SurfaceRows,
+    ) -> Bits {
+        let triangles = hits.place.map(|place| place.part);
+        let (mut rest, mut unusual) = (meshes, Bits::NONE);
+        while rest.any() {
+            let index = hits.primitive[rest.lowest() & (WIDTH - 1)];
+            let mut same = Bits::NONE;
+            for lane in rest.lanes() {
+                same |= Bits(u8::from(hits.primitive[lane] == index) << lane);
+            }
+            rest = rest.without(same);
+            let primitive = &self.world.primitives[index as usize];
+            let Primitive::Mesh { mesh, .. } = primitive else { continue };
+            let mesh = &self.meshes[*mesh as usize];
+            let (surface, done) = match self.world.placement(primitive) {
+                None => mesh.surfaces(ray, &triangles, same),
+                Some(placement) => {
+                    let (surface, done) = mesh.surfaces(&placement.lanes_to_local(*ray), &triangles, same);
+                    (placement.carry_lanes_out(&surface), done)
+                }
+            };
+            unusual |= same.without(done);
+            surfaces.put(0, done, &surface);
+        }
+        unusual
     }
 
     /// The material of a sphere or plane of the world, and the space of its object.
@@ -486,24 +543,36 @@ impl SurfaceRows {
     #[inline(always)]
     fn put_spheres<L: Lanes>(&mut self, at: usize, lanes: Bits, spheres: &LaneSpheres<L>, ray: &LaneRay<L>, t: L) {
         let (point, normal, error) = spheres.surface(ray, t);
-        self.put(at, lanes, point, normal, error);
+        self.put(at, lanes, &LaneSurfacePoint { point, error, geometric_normal: normal, shading_normal: normal });
     }
 
     /// Puts in where rays meet planes.
     #[inline(always)]
     fn put_planes<L: Lanes>(&mut self, at: usize, lanes: Bits, planes: &LanePlanes<L>, ray: &LaneRay<L>, t: L) {
         let (point, error) = planes.surface(ray, t);
-        self.put(at, lanes, point, planes.normal, error);
+        let normal = planes.normal;
+        self.put(at, lanes, &LaneSurfacePoint { point, error, geometric_normal: normal, shading_normal: normal });
     }
 
-    /// Puts in surfaces of some lanes, whose shading normal is the geometric one.
+    /// Puts in surfaces of some lanes.
     #[inline(always)]
-    fn put<L: Lanes>(&mut self, at: usize, lanes: Bits, point: LaneVector<L>, normal: LaneVector<L>, error: L) {
-        let before = LaneVector::load(&self.point, at);
-        point.or_where_not(lanes, before).store(&mut self.point, at);
+    fn put<L: Lanes>(&mut self, at: usize, lanes: Bits, surface: &LaneSurfacePoint<L>) {
+        let LaneSurfacePoint { point, error, geometric_normal, shading_normal } = *surface;
+        put_rows(&mut self.point, at, lanes, point);
         error.or_where_not(lanes, L::load(&self.error, at)).store(&mut self.error, at);
-        for normals in [&mut self.geometric_normal, &mut self.shading_normal] {
-            normal.or_where_not(lanes, LaneVector::load(normals, at)).store(normals, at);
-        }
+        put_rows(&mut self.geometric_normal, at, lanes, geometric_normal);
+        put_rows(&mut self.shading_normal, at, lanes, shading_normal);
     }
+}
+
+/// Puts some lanes into rows.
+#[inline(always)]
+fn put_rows<L: Lanes>(rows: &mut [[f64; WIDTH]; 3], at: usize, lanes: Bits, v: LaneVector<L>) {
+    v.or_where_not(lanes, LaneVector::load(rows, at)).store(rows, at);
+}
+
+/// One ray of rows of origins and directions.
+#[inline(always)]
+fn ray_of((origin, direction): (&[[f64; WIDTH]; 3], &[[f64; WIDTH]; 3]), lane: usize) -> Ray {
+    Ray::new(Point3::from(column(origin, lane)), Vector3::from(column(direction, lane)))
 }

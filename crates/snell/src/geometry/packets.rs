@@ -4,20 +4,21 @@
 //! everything else by one ray after the other. Of hits at the same distance the lowest primitive's wins, in whatever order they
 //! are found, so the way through the tree may be anybody's.
 
+use std::ops::ControlFlow;
+
 use snell_math::lanes::{Bits, Floats, LaneVector, Lanes, WIDTH, Work};
 use snell_math::{Point3, Ray, Vector3};
 
 use super::lanes::{HitRows, key_of};
 use super::space::{NONE, Primitive, Space};
-use super::{Geometry, Hit, InnerHit, LocalHit, LocalPlace, QueryScratch, Touching};
+use super::{Geometry, Hit, InnerHit, LocalHit, LocalPlace, Placement, QueryScratch, TOUCHING, Touching};
 use crate::accel::wide::{Group, PrimitiveFinder, PrimitiveSeeker, widened_measure};
 use crate::shape::triangle_mesh::RayRow;
 use crate::shape::{LaneRay, LaneSpheres};
-use crate::task::{column, set_column};
+use crate::task::column;
 
 /// Rays side by side, in the space of what they are asked about.
 pub(super) struct RayGroup {
-    rays: [Ray; WIDTH],
     origin: [[f64; WIDTH]; 3],
     direction: [[f64; WIDTH]; 3],
     /// See [`Touching`], in world units also where the rays are not.
@@ -25,36 +26,72 @@ pub(super) struct RayGroup {
 }
 
 impl RayGroup {
-    /// Of rows of the world's rays.
+    /// Of the world's rays.
     #[inline(always)]
-    pub(super) fn new(origin: &[[f64; WIDTH]; 3], direction: &[[f64; WIDTH]; 3]) -> Self {
-        let rays = std::array::from_fn(|lane| {
-            Ray::new(Point3::from(column(origin, lane)), Vector3::from(column(direction, lane)))
-        });
-        let along = rays.map(|ray| Touching::along(&ray).0);
-        Self { rays, origin: *origin, direction: *direction, along }
+    pub(super) fn new<L: Lanes>(ray: &LaneRay<L>) -> Self {
+        let mut along = [0.0; WIDTH];
+        (L::splat(TOUCHING) * ray.origin.max_abs()).store(&mut along, 0);
+        Self::with_along(ray, along)
+    }
+
+    #[inline(always)]
+    fn with_along<L: Lanes>(ray: &LaneRay<L>, along: [f64; WIDTH]) -> Self {
+        let rows = [[0.0; WIDTH]; 3];
+        let mut group = Self { origin: rows, direction: rows, along };
+        ray.origin.store(&mut group.origin, 0);
+        ray.direction.store(&mut group.direction, 0);
+        group
     }
 
     /// The same, taken to a local space.
-    #[inline]
-    fn to_local(&self, placement: &super::Placement, active: Bits) -> Self {
-        let Self { mut rays, mut origin, mut direction, along } = *self;
-        for lane in active.lanes() {
-            rays[lane] = placement.to_local(&rays[lane]);
-            set_column(&mut origin, lane, rays[lane].origin.to_array());
-            set_column(&mut direction, lane, rays[lane].direction.to_array());
+    #[inline(always)]
+    fn to_local<L: Lanes>(&self, placement: &Placement) -> Self {
+        L::stage(ToLocal { group: self, placement })
+    }
+
+    /// The same, in the space of a primitive, in a place for it where that is another one.
+    #[inline(always)]
+    fn in_space_of<'g, L: Lanes>(
+        &'g self,
+        space: &Space,
+        primitive: &Primitive,
+        carried: &'g mut Option<Self>,
+    ) -> &'g Self {
+        match space.placement(primitive) {
+            None => self,
+            Some(placement) => carried.insert(self.to_local::<L>(placement)),
         }
-        Self { rays, origin, direction, along }
+    }
+
+    /// One of them.
+    #[inline(always)]
+    fn ray(&self, lane: usize) -> Ray {
+        let lane = lane & (WIDTH - 1);
+        Ray::new(Point3::from(column(&self.origin, lane)), Vector3::from(column(&self.direction, lane)))
     }
 
     #[inline(always)]
     fn row(&self) -> RayRow<'_> {
-        RayRow { rays: &self.rays, origin: &self.origin, direction: &self.direction }
+        RayRow { origin: &self.origin, direction: &self.direction }
     }
 
     #[inline(always)]
     fn lanes<L: Lanes>(&self) -> LaneRay<L> {
         LaneRay { origin: LaneVector::load(&self.origin, 0), direction: LaneVector::load(&self.direction, 0) }
+    }
+}
+
+/// The question where rays are in a local space.
+struct ToLocal<'a> {
+    group: &'a RayGroup,
+    placement: &'a Placement,
+}
+
+impl Work for ToLocal<'_> {
+    type Output = RayGroup;
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> RayGroup {
+        RayGroup::with_along(&self.placement.lanes_to_local(self.group.lanes::<L>()), self.group.along)
     }
 }
 
@@ -140,22 +177,15 @@ impl Work for NearestInSpace<'_, '_> {
     fn run<L: Lanes>(self) {
         let Self { geometry, space, group, active, found, scratch } = self;
         let ray = group.lanes::<L>();
-        let ready = &Group::new(space.bvh.tree(), ray.origin, ray.direction, active, &found.key);
-        let mut seeker = NearestSeeker::<L> {
-            geometry,
-            space,
-            group,
-            ready,
-            ray,
-            along: L::load(&group.along, 0),
-            start: L::load(&ready.start, 0),
-            scale: L::load(&ready.scale, 0),
-            found,
-            scratch,
-        };
-        space.bvh.nearest_together::<L>(ready, &mut seeker);
-        for lane in ready.strange.lanes() {
-            let (ray, touching) = (&group.rays[lane], Touching(group.along[lane]));
+        let end = L::load(&found.key, 0);
+        let probes = space.bvh.tree().approach_together(ray.origin, ray.direction, active, end);
+        let ready = &Group::new(&probes, end);
+        let along = L::load(&group.along, 0);
+        let (start, scale) = (probes.start, probes.scale);
+        let mut seeker = NearestSeeker::<L> { geometry, space, group, ready, ray, along, start, scale, found, scratch };
+        space.bvh.nearest_together(&probes, ready, &mut seeker);
+        for lane in probes.strange.lanes() {
+            let (ray, touching) = (&group.ray(lane), Touching(group.along[lane]));
             let limit = found.key[lane];
             let nearest = space.nearest_bounded(ray, touching, limit, |primitive, is_opaque, limit| {
                 geometry.meet_in(space, primitive, is_opaque, ray, touching, limit, scratch)
@@ -187,7 +217,7 @@ impl<L: Lanes> PrimitiveSeeker for NearestSeeker<'_, '_, '_, L> {
                 return;
             }
             let lane = rays.lowest() & (WIDTH - 1);
-            if let Some(hit) = sphere.intersect_likely(&self.group.rays[lane], 0.0, f64::INFINITY) {
+            if let Some(hit) = sphere.intersect_likely(&self.group.ray(lane), 0.0, f64::INFINITY) {
                 let is_opaque = self.space.attributes[index as usize].is_opaque;
                 let hit = Touching(self.group.along[lane]).candidate(hit.into(), is_opaque);
                 self.found.take(lane, index, &hit);
@@ -220,7 +250,7 @@ impl Geometry {
                 if self.prototypes[*prototype as usize].handful.is_empty() =>
             {
                 let inner = &self.prototypes[*prototype as usize];
-                let local = group.to_local(&space.placements[*placement as usize], rays);
+                let local = group.to_local::<L>(&space.placements[*placement as usize]);
                 let mut hits = HitRows::NOTHING;
                 let mut nearest = Found { key: found.key, hits: &mut hits, complex: Bits::NONE };
                 for alone in inner.first_alone..inner.primitives.len() {
@@ -237,14 +267,8 @@ impl Geometry {
                 }
             }
             Primitive::Mesh { mesh, .. } => {
-                let carried;
-                let group = match space.placement(primitive) {
-                    None => group,
-                    Some(placement) => {
-                        carried = group.to_local(placement, rays);
-                        &carried
-                    }
-                };
+                let mut carried = None;
+                let group = group.in_space_of::<L>(space, primitive, &mut carried);
                 let is_opaque = space.attributes[index as usize].is_opaque;
                 let mut hits = [None; WIDTH];
                 let t_max = found.key.map(f64::next_up);
@@ -258,7 +282,7 @@ impl Geometry {
             }
             _ => {
                 for lane in rays.lanes() {
-                    let (ray, touching) = (&group.rays[lane], Touching(group.along[lane]));
+                    let (ray, touching) = (&group.ray(lane), Touching(group.along[lane]));
                     let is_opaque = space.attributes[index as usize].is_opaque;
                     let met = self.meet_in(space, primitive, is_opaque, ray, touching, found.key[lane], scratch);
                     if let Some(hit) = met {
@@ -325,14 +349,15 @@ impl Work for BlockedInSpace<'_, '_> {
     fn run<L: Lanes>(self) -> Bits {
         let Self { geometry, space, outer, group, active, shadows } = self;
         let ray = group.lanes::<L>();
-        let ready = &Group::new(space.bvh.tree(), ray.origin, ray.direction, active, shadows.distance);
         let distance = L::load(shadows.distance, 0);
+        let probes = space.bvh.tree().approach_together(ray.origin, ray.direction, active, distance);
+        let ready = &Group::new(&probes, distance);
         let mut finder =
             BlockedFinder::<L> { geometry, space, outer, group, ray, distance, blocked: Bits::NONE, shadows };
-        space.bvh.each_together::<L>(ready, &mut finder);
+        space.bvh.each_together(&probes, ready, &mut finder);
         let mut blocked = finder.blocked;
-        for lane in ready.strange.lanes() {
-            let (ray, distance) = (&group.rays[lane], shadows.distance[lane]);
+        for lane in probes.strange.lanes() {
+            let (ray, distance) = (&group.ray(lane), shadows.distance[lane]);
             let is_blocked = space
                 .bvh
                 .any(ray, distance, |index| geometry.is_blocked_alone(space, outer, index, ray, lane, shadows));
@@ -354,7 +379,7 @@ impl<L: Lanes> PrimitiveFinder for BlockedFinder<'_, '_, '_, L> {
                     LaneSpheres::from(sphere).intersect_likely(&self.ray, self.distance).0 & rays
                 } else {
                     let lane = rays.lowest() & (WIDTH - 1);
-                    let (ray, distance) = (&self.group.rays[lane], self.shadows.distance[lane]);
+                    let (ray, distance) = (&self.group.ray(lane), self.shadows.distance[lane]);
                     if sphere.intersect_likely(ray, 0.0, distance).is_some() { rays } else { Bits::NONE }
                 }
             }
@@ -383,7 +408,7 @@ impl Geometry {
                 if self.prototypes[*prototype as usize].handful.is_empty() =>
             {
                 let inner = &self.prototypes[*prototype as usize];
-                let local = group.to_local(&space.placements[*placement as usize], rays);
+                let local = group.to_local::<L>(&space.placements[*placement as usize]);
                 let outer = Some((index, *material));
                 let mut blocked = Bits::NONE;
                 for alone in inner.first_alone..inner.primitives.len() {
@@ -406,20 +431,33 @@ impl Geometry {
                 blocked
             }
             Primitive::Mesh { mesh, .. } if shadows.any_blocks || space.attributes[index as usize].is_opaque => {
-                let carried;
-                let group = match space.placement(primitive) {
-                    None => group,
-                    Some(placement) => {
-                        carried = group.to_local(placement, rays);
-                        &carried
-                    }
-                };
+                let mut carried = None;
+                let group = group.in_space_of::<L>(space, primitive, &mut carried);
                 self.meshes[*mesh as usize].any_together::<L>(group.row(), rays, shadows.distance)
+            }
+            Primitive::Mesh { mesh, .. } => {
+                let mut carried = None;
+                let group = group.in_space_of::<L>(space, primitive, &mut carried);
+                let attributes = &space.attributes[index as usize];
+                let (number, inner, inherited) = match outer {
+                    None => (index, NONE, NONE),
+                    Some((instance, material)) => (instance, index, material),
+                };
+                let hits = &mut *shadows.hits;
+                self.meshes[*mesh as usize].each_together::<L>(group.row(), rays, shadows.distance, |lane, hit| {
+                    let LocalHit { t, place } = LocalHit::from(hit);
+                    let material = self.material_of(primitive, attributes, inherited, place);
+                    if !self.transparent[material as usize] {
+                        return ControlFlow::Break(());
+                    }
+                    hits.push((lane as u8, Hit { t, primitive: number, inner, place }));
+                    ControlFlow::Continue(())
+                })
             }
             _ => {
                 let mut blocked = Bits::NONE;
                 for lane in rays.lanes() {
-                    if self.is_blocked_alone(space, outer, index, &group.rays[lane], lane, shadows) {
+                    if self.is_blocked_alone(space, outer, index, &group.ray(lane), lane, shadows) {
                         blocked |= Bits::lane(lane);
                     }
                 }

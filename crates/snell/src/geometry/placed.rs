@@ -1,8 +1,9 @@
 //! Placements: a transform into the space around, with what rounding does on the way.
 
+use snell_math::lanes::Lanes;
 use snell_math::{Normal3, Point3, Ray, Transform};
 
-use crate::shape::SurfacePoint;
+use crate::shape::{LaneRay, LaneSurfacePoint, SurfacePoint};
 
 /// A transform from a local space to the one around it.
 #[derive(Clone, Debug)]
@@ -30,6 +31,15 @@ impl Placement {
         self.outer_from_local.inverse_ray(ray)
     }
 
+    /// As [`Placement::to_local`], a ray in each lane.
+    #[inline(always)]
+    pub fn lanes_to_local<L: Lanes>(&self, ray: LaneRay<L>) -> LaneRay<L> {
+        LaneRay {
+            origin: self.outer_from_local.inverse_points(ray.origin),
+            direction: self.outer_from_local.inverse_vectors(ray.direction),
+        }
+    }
+
     /// A point in the local space.
     #[inline]
     pub fn point_to_local(&self, point: Point3) -> Point3 {
@@ -46,6 +56,12 @@ impl Placement {
     #[inline]
     pub fn normal_to_local(&self, normal: Normal3) -> Normal3 {
         self.outer_from_local.inverse().normal(normal).normalize()
+    }
+
+    /// As [`Placement::carry_out`], a point in each lane.
+    #[inline(always)]
+    pub fn carry_lanes_out<L: Lanes>(&self, surface: &LaneSurfacePoint<L>) -> LaneSurfacePoint<L> {
+        surface.carried(&self.outer_from_local)
     }
 
     /// A point of a surface in the space around.

@@ -137,6 +137,33 @@ impl SurfacePoint {
     }
 }
 
+/// As [`SurfacePoint`], a point in each lane, without coordinates of its own.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LaneSurfacePoint<L> {
+    pub(crate) point: LaneVector<L>,
+    pub(crate) error: L,
+    pub(crate) geometric_normal: LaneVector<L>,
+    pub(crate) shading_normal: LaneVector<L>,
+}
+
+impl<L: Lanes> LaneSurfacePoint<L> {
+    /// As [`SurfacePoint::carried`], with the same bits.
+    #[inline(always)]
+    pub(crate) fn carried(&self, outer_from_inner: &Transform) -> Self {
+        let carried = outer_from_inner.normals(self.geometric_normal);
+        let lift = carried.length_squared().sqrt();
+        let forth_terms = outer_from_inner.terms(self.point.abs());
+        let back_terms = outer_from_inner.inverse().terms(forth_terms);
+        let rounding = L::splat(gamma(16)) * forth_terms.sum();
+        Self {
+            point: outer_from_inner.points(self.point),
+            error: rounding + (self.error + L::splat(gamma(32)) * back_terms.sum()) / lift,
+            geometric_normal: carried.normalize(),
+            shading_normal: outer_from_inner.normals(self.shading_normal).normalize(),
+        }
+    }
+}
+
 /// A shape ready to be traced, in its own space.
 ///
 /// ```

@@ -7,6 +7,8 @@
 mod blocks;
 mod many;
 mod queries;
+mod spaces;
+mod surfaces;
 mod together;
 mod topology;
 mod watertight;
@@ -15,6 +17,8 @@ mod watertight;
 mod query_tests;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod together_tests;
 
 use std::ops::ControlFlow;
 
@@ -273,11 +277,23 @@ impl TriangleMesh {
             .map_or(geometric_normal.into(), |normal| Normal3::from(normal).face_forward(geometric_normal));
         SurfacePoint {
             point: a + ab * hit.barycentric[1] + ac * hit.barycentric[2],
-            error: 64.0 * 0.5 * f64::EPSILON * self.bounds.min.max_abs().max(self.bounds.max.max_abs()),
+            error: self.surface_error(),
             geometric_normal: geometric_normal.into(),
             shading_normal,
             uv: [u, v],
         }
+    }
+
+    /// How far points of surfaces are from the true ones, at most.
+    #[inline]
+    fn surface_error(&self) -> f64 {
+        64.0 * 0.5 * f64::EPSILON * self.bounds.min.max_abs().max(self.bounds.max.max_abs())
+    }
+
+    /// Whether there are colours of vertices.
+    #[inline]
+    pub(crate) fn has_colors(&self) -> bool {
+        !self.colors.is_empty()
     }
 
     /// The colour of the vertices, mixed at a hit; `None` where the mesh has no colours or they are not finite.

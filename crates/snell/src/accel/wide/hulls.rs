@@ -21,7 +21,7 @@ use snell_math::lanes::{Bits, Eight, Floats, LaneVector, Lanes, WIDTH};
 use snell_math::{Point3, Vector3};
 
 use super::probe::{EPSILON, Probe, splat};
-use super::probes::spread;
+use super::probes::{Probes, spread};
 use super::shared::{NONE, number};
 
 /// What a primitive lies in, beside its box.
@@ -163,9 +163,9 @@ pub(super) struct BallLines {
 }
 
 impl BallLines {
-    /// Of the probes' origins, directions and errors, and the tree's extent.
     #[inline(always)]
-    pub(super) fn new<L: Lanes>(origin: LaneVector<L>, direction: LaneVector<L>, error: L, extent: f64) -> Self {
+    pub(super) fn new<L: Lanes>(probes: &Probes<L>) -> Self {
+        let Probes { origin, direction, error, extent, .. } = *probes;
         let rows = [[0.0; WIDTH]; 3];
         let mut lines = Self { origin: rows, direction: rows, scaled: rows, error: [0.0; WIDTH] };
         store(origin, &mut lines.origin);

@@ -38,6 +38,7 @@ pub(crate) use group::{Finder, Seeker};
 pub(crate) use memory::roomy;
 pub(crate) use path::Path;
 pub(crate) use probe::{Approach, BoxLine, BoxRay, EPSILON, Measure, Probe, splat, widened_measure};
+pub(crate) use probes::{Probes, spread};
 pub(crate) use shared::{NONE, Visited, number};
 pub(crate) use slabs::Slabs;
 pub(crate) use stack::Stack;

@@ -283,7 +283,7 @@ impl<V: FnMut(u32) -> ControlFlow<()>> Once<V> {
             if entry == NONE {
                 break;
             }
-            if self.visited.is_new(entry) {
+            if self.visited.is_new(0, entry) {
                 (self.visit)(number(entry))?;
             }
         }

@@ -7,14 +7,25 @@ use super::probe::{BoxRay, EXTENTS, LEAST};
 
 /// As [`super::Probe`], a ray in each lane.
 #[derive(Clone, Copy)]
-pub(super) struct Probes<L> {
-    pub(super) start: L,
-    pub(super) scale: L,
-    pub(super) origin: LaneVector<L>,
-    pub(super) direction: LaneVector<L>,
+pub struct Probes<L> {
+    /// The lanes whose rays come near the tree, and are as most are.
+    pub plain: Bits,
+    /// Those whose rays have to be asked for one by one.
+    pub strange: Bits,
+    /// See [`super::Measure`].
+    pub start: L,
+    /// See [`super::Measure`].
+    pub scale: L,
+    /// See [`super::Probe`].
+    pub origin: LaneVector<L>,
+    /// See [`super::Probe`].
+    pub direction: LaneVector<L>,
     inverse: LaneVector<L>,
     margin: L,
-    pub(super) error: L,
+    /// See [`super::Probe`].
+    pub error: L,
+    /// See [`super::Probe`].
+    pub extent: f64,
 }
 
 /// The lanes whose sign is negative, that of zero as well.
@@ -31,15 +42,15 @@ fn reciprocal<L: Lanes>(v: LaneVector<L>) -> LaneVector<L> {
 }
 
 impl WideTree {
-    /// As [`WideTree::approach`], from t = 0 on: the lanes that are plain, and those that are strange.
+    /// As [`WideTree::approach`], from t = 0 on, of the active ones of rays side by side.
     #[inline(always)]
-    pub(super) fn approach_together<L: Lanes>(
+    pub fn approach_together<L: Lanes>(
         &self,
         from: LaneVector<L>,
         along: LaneVector<L>,
         active: Bits,
         t_max: L,
-    ) -> (Probes<L>, Bits, Bits) {
+    ) -> Probes<L> {
         let (extent, zero) = (L::splat(self.extent), L::splat(0.0));
         let (reach, scale) = (from.max_abs(), along.max_abs());
         let error = L::splat(1.0 / (1_u64 << 45) as f64) * (reach + extent);
@@ -74,8 +85,18 @@ impl WideTree {
         let direction = along * x.abs().smaller(y.abs()).smaller(z.abs());
         plain &= start.lt(L::splat(f64::INFINITY));
         plain &= origin.max_abs().le(L::splat(1.5) * extent) & L::splat(0.5).le(direction.max_abs());
-        let probes = Probes { start, scale, origin, direction, inverse: inverse * scale, margin, error };
-        (probes, ahead & plain, ahead.without(plain))
+        Probes {
+            plain: ahead & plain,
+            strange: ahead.without(plain),
+            start,
+            scale,
+            origin,
+            direction,
+            inverse: inverse * scale,
+            margin,
+            error,
+            extent: self.extent,
+        }
     }
 }
 
@@ -127,7 +148,7 @@ impl BoxLines {
 
 /// A column of three rows, each number in all lanes.
 #[inline(always)]
-pub(super) fn spread<F: Eight>([x, y, z]: &[[f32; WIDTH]; 3], lane: usize) -> [F; 3] {
+pub fn spread<F: Eight>([x, y, z]: &[[f32; WIDTH]; 3], lane: usize) -> [F; 3] {
     let lane = lane & (WIDTH - 1);
     [F::splat(x[lane]), F::splat(y[lane]), F::splat(z[lane])]
 }

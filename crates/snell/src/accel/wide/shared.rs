@@ -3,7 +3,7 @@
 //! Their numbers are marked in the leaves. A query for the closest hit does not care; one that visits every primitive once
 //! remembers the marked ones that it has seen, and only these.
 
-use std::collections::HashSet;
+use std::collections::BTreeSet;
 
 use smallvec::SmallVec;
 
@@ -42,34 +42,34 @@ pub(super) fn mark_shared(leaves: &mut [[u32; WIDTH]], count: usize) {
     }
 }
 
-/// Which of the marked primitives a query has visited.
+/// Which of the marked primitives some rays' queries have visited.
 #[derive(Debug, Default)]
 pub struct Visited {
-    few: SmallVec<[u32; 16]>,
+    few: SmallVec<[u64; 16]>,
     /// Once there are too many to look through.
-    many: HashSet<u32>,
+    many: BTreeSet<u64>,
 }
 
 impl Visited {
-    /// True the first time that a leaf's entry is asked for, and always for one that no other leaf has.
+    /// True the first time that a leaf's entry is asked for by the ray of a lane, and always for one that no other leaf has.
     #[inline(always)]
-    pub fn is_new(&mut self, entry: u32) -> bool {
-        entry & SHARED == 0 || self.insert(entry)
+    pub fn is_new(&mut self, lane: usize, entry: u32) -> bool {
+        entry & SHARED == 0 || self.insert((lane as u64) << 32 | u64::from(entry))
     }
 
     #[inline(never)]
-    fn insert(&mut self, entry: u32) -> bool {
+    fn insert(&mut self, key: u64) -> bool {
         if self.many.is_empty() && self.few.len() < 16 {
-            let is_new = !self.few.contains(&entry);
+            let is_new = !self.few.contains(&key);
             if is_new {
-                self.few.push(entry);
+                self.few.push(key);
             }
             return is_new;
         }
         if self.many.is_empty() {
             self.many.extend(self.few.iter());
         }
-        self.many.insert(entry)
+        self.many.insert(key)
     }
 }
 
@@ -81,9 +81,9 @@ mod tests {
     fn marked_ones_are_new_once() {
         let mut visited = Visited::default();
         for round in 0..3 {
-            for primitive in 0..100 {
-                assert_eq!(visited.is_new(primitive | SHARED), round == 0);
-                assert!(visited.is_new(1000 + primitive));
+            for (primitive, lane) in (0..100).flat_map(|primitive| [(primitive, 0), (primitive, 5)]) {
+                assert_eq!(visited.is_new(lane, primitive | SHARED), round == 0);
+                assert!(visited.is_new(lane, 1000 + primitive));
             }
         }
     }

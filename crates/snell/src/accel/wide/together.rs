@@ -1,79 +1,34 @@
 //! Rays side by side, made ready for a tree, and their questions to primitives that are known by number.
 
-use snell_math::lanes::{Bits, Eight, Floats, LaneVector, Lanes, WIDTH};
+use snell_math::lanes::{Bits, Eight, Floats, Lanes, WIDTH};
 
 use super::group::{Finder, Seeker, column_of};
 use super::hulls::BallLines;
-use super::probe::{Measure, Probe, widened_measure};
-use super::probes::BoxLines;
+use super::probe::{Measure, widened_measure};
+use super::probes::{BoxLines, Probes};
 use super::shared::{NONE, number};
 use super::traverse::take_lane;
 use super::{WideBvh, WideTree};
 
-/// Up to eight rays, made ready for one tree: their [`Probe`]s and all that comes of these, in rows.
+/// Up to eight rays, made ready for one tree: how far each goes, and what box tests need, in rows.
 pub struct Group {
-    /// Those that come near the tree, and are as most are.
-    pub plain: Bits,
-    /// Those that have to be asked for one by one.
-    pub strange: Bits,
     /// How far each goes, measured as [`Measure::limit`] does.
     pub limits: [f32; WIDTH],
-    /// See [`Measure::start`].
-    pub start: [f64; WIDTH],
-    /// See [`Measure::scale`].
-    pub scale: [f64; WIDTH],
-    origin: [[f64; WIDTH]; 3],
-    direction: [[f64; WIDTH]; 3],
-    error: [f64; WIDTH],
-    extent: f64,
+    start: [f64; WIDTH],
+    scale: [f64; WIDTH],
     pub(super) lines: BoxLines,
 }
 
 impl Group {
-    /// Of some rays, each from its origin up to a parameter of its own.
+    /// Of probes, each up to a parameter of its own.
     #[inline(always)]
-    pub fn new<L: Lanes>(
-        tree: &WideTree,
-        origin: LaneVector<L>,
-        direction: LaneVector<L>,
-        active: Bits,
-        t_max: &[f64; WIDTH],
-    ) -> Self {
-        let t_max = L::load(t_max, 0);
-        let (probes, plain, strange) = tree.approach_together(origin, direction, active, t_max);
-        let mut group = Self {
-            plain,
-            strange,
-            limits: [0.0; WIDTH],
-            start: [0.0; WIDTH],
-            scale: [0.0; WIDTH],
-            origin: [[0.0; WIDTH]; 3],
-            direction: [[0.0; WIDTH]; 3],
-            error: [0.0; WIDTH],
-            extent: tree.extent,
-            lines: BoxLines::new(&probes),
-        };
+    pub fn new<L: Lanes>(probes: &Probes<L>, t_max: L) -> Self {
+        let lines = BoxLines::new(probes);
+        let mut group = Self { limits: [0.0; WIDTH], start: [0.0; WIDTH], scale: [0.0; WIDTH], lines };
         widened_measure((t_max - probes.start) * probes.scale).store(&mut group.limits, 0);
         probes.start.store(&mut group.start, 0);
         probes.scale.store(&mut group.scale, 0);
-        probes.origin.store(&mut group.origin, 0);
-        probes.direction.store(&mut group.direction, 0);
-        probes.error.store(&mut group.error, 0);
         group
-    }
-
-    /// What is known of one ray, where it is a plain one; but it is good for no box test.
-    #[inline(always)]
-    pub fn probe(&self, lane: usize) -> Probe {
-        let lane = lane & (WIDTH - 1);
-        Probe {
-            measure: self.measure(lane),
-            origin: self.origin.map(|row| row[lane]),
-            direction: self.direction.map(|row| row[lane]),
-            error: self.error[lane],
-            extent: self.extent,
-            ..Probe::NOTHING
-        }
     }
 
     /// How one ray is measured.
@@ -91,16 +46,22 @@ impl Group {
 }
 
 impl Group {
-    /// Gives the leaves of the tree that plain rays enter before their limits to the seeker.
+    /// Gives the leaves of the tree that some rays, plain ones, enter before their limits to the seeker.
     #[inline(always)]
-    pub fn nearest_in<F: Eight>(&self, tree: &WideTree, limits: &mut [f32; WIDTH], seeker: &mut impl Seeker) {
-        tree.nearest_together::<F>(&self.lines, self.plain, limits, seeker);
+    pub fn nearest_in<F: Eight>(
+        &self,
+        tree: &WideTree,
+        rays: Bits,
+        limits: &mut [f32; WIDTH],
+        seeker: &mut impl Seeker,
+    ) {
+        tree.nearest_together::<F>(&self.lines, rays, limits, seeker);
     }
 
-    /// Gives the leaves of the tree that plain rays enter before their limits to the finder, until it has enough.
+    /// Gives the leaves of the tree that some rays, plain ones, enter before their limits to the finder, until it has enough.
     #[inline(always)]
-    pub fn each_in<F: Eight>(&self, tree: &WideTree, finder: &mut impl Finder) {
-        tree.each_together::<F>(&self.lines, self.plain, &self.limits, finder);
+    pub fn each_in<F: Eight>(&self, tree: &WideTree, rays: Bits, finder: &mut impl Finder) {
+        tree.each_together::<F>(&self.lines, rays, &self.limits, finder);
     }
 }
 
@@ -124,9 +85,8 @@ struct Leaves<'a> {
 
 impl<'a> Leaves<'a> {
     #[inline(always)]
-    fn new<L: Lanes>(bvh: &'a WideBvh, group: &Group) -> Self {
-        let [origin, direction] = [&group.origin, &group.direction].map(|rows| LaneVector::load(rows, 0));
-        Self { bvh, balls: BallLines::new::<L>(origin, direction, L::load(&group.error, 0), group.extent) }
+    fn new<L: Lanes>(bvh: &'a WideBvh, probes: &Probes<L>) -> Self {
+        Self { bvh, balls: BallLines::new(probes) }
     }
 
     #[inline(always)]
@@ -221,19 +181,24 @@ impl WideBvh {
     /// Gives the primitives that the plain rays of a group may meet before their limits to the seeker, with these rays; the nearer
     /// ones first, as far as boxes tell.
     #[inline(always)]
-    pub(crate) fn nearest_together<L: Lanes>(&self, group: &Group, seeker: &mut impl PrimitiveSeeker) {
-        let mut seeker =
-            SeekAtLeaves::<L, _> { leaves: Leaves::new::<L>(self, group), seeker, lanes: std::marker::PhantomData };
+    pub(crate) fn nearest_together<L: Lanes>(
+        &self,
+        probes: &Probes<L>,
+        group: &Group,
+        seeker: &mut impl PrimitiveSeeker,
+    ) {
+        let leaves = Leaves::new(self, probes);
+        let mut seeker = SeekAtLeaves::<L, _> { leaves, seeker, lanes: std::marker::PhantomData };
         let mut limits = group.limits;
-        group.nearest_in::<L::Eight>(&self.tree, &mut limits, &mut seeker);
+        group.nearest_in::<L::Eight>(&self.tree, probes.plain, &mut limits, &mut seeker);
     }
 
     /// Gives the primitives that the plain rays of a group may meet before their limits to the finder, with these rays, in no
     /// particular order.
     #[inline(always)]
-    pub(crate) fn each_together<L: Lanes>(&self, group: &Group, finder: &mut impl PrimitiveFinder) {
-        let (leaves, limits) = (Leaves::new::<L>(self, group), group.limits);
+    pub(crate) fn each_together<L: Lanes>(&self, probes: &Probes<L>, group: &Group, finder: &mut impl PrimitiveFinder) {
+        let (leaves, limits) = (Leaves::new(self, probes), group.limits);
         let mut finder = FindAtLeaves::<L, _> { leaves, limits, finder, lanes: std::marker::PhantomData };
-        group.each_in::<L::Eight>(&self.tree, &mut finder);
+        group.each_in::<L::Eight>(&self.tree, probes.plain, &mut finder);
     }
 }

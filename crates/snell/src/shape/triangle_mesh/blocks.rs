@@ -26,10 +26,11 @@
 //!
 //! [`watertight`]: super::watertight
 
-use snell_math::lanes::{Eight, WIDTH};
+use snell_math::lanes::{Eight, Floats, Lanes, WIDTH};
 
+use super::spaces::LongAxes;
 use super::watertight::RaySpace;
-use crate::accel::wide::{EPSILON, NONE, Probe, number, splat};
+use crate::accel::wide::{EPSILON, NONE, Probe, Probes, number, splat, spread};
 
 /// Eight triangles, in the order of their numbers. Five cache lines.
 #[derive(Clone, Copy, Debug)]
@@ -93,10 +94,6 @@ pub(super) struct BlockLine {
 }
 
 impl BlockLine {
-    /// What stands in for one where there is none.
-    pub(super) const NOTHING: Self =
-        Self { axes: [0, 1, 2], slopes: [0.0; 2], origin: [0.0; 3], sign: 1.0, error: 0.0 };
-
     #[inline(always)]
     pub(super) fn new(probe: &Probe, space: &RaySpace) -> Self {
         let axes @ [first, second, third] = space.axes();
@@ -113,6 +110,47 @@ impl BlockLine {
             ],
             sign: d[third] as f32,
             error: error as f32,
+        }
+    }
+}
+
+/// As [`BlockLine`], in rows.
+pub(super) struct BlockLines {
+    slopes: [[f32; WIDTH]; 2],
+    origin: [[f32; WIDTH]; 3],
+    sign: [f32; WIDTH],
+    error: [f32; WIDTH],
+}
+
+impl BlockLines {
+    #[inline(always)]
+    pub(super) fn new<L: Lanes>(probes: &Probes<L>, axes: LongAxes) -> Self {
+        let row = [0.0; WIDTH];
+        let mut lines = Self { slopes: [row; 2], origin: [row; 3], sign: row, error: row };
+        let (o, d) = (axes.in_order(probes.origin), axes.in_order(probes.direction));
+        let slopes = [-d.x * d.z, -d.y * d.z];
+        slopes[0].to_floats().store(&mut lines.slopes[0], 0);
+        slopes[1].to_floats().store(&mut lines.slopes[1], 0);
+        (o.x + slopes[0] * o.z).to_floats().store(&mut lines.origin[0], 0);
+        (o.y + slopes[1] * o.z).to_floats().store(&mut lines.origin[1], 0);
+        o.z.to_floats().store(&mut lines.origin[2], 0);
+        d.z.to_floats().store(&mut lines.sign, 0);
+        let error = L::splat(24.0 * f64::from(EPSILON) * probes.extent) + L::splat(2.0) * probes.error;
+        error.to_floats().store(&mut lines.error, 0);
+        lines
+    }
+
+    /// One of them in all lanes.
+    #[inline(always)]
+    pub(super) fn spread<F: Eight>(&self, axes: LongAxes, lane: usize) -> BlockRay<F> {
+        let lane = lane & (WIDTH - 1);
+        BlockRay {
+            axes: axes.of(lane),
+            slopes: [F::splat(self.slopes[0][lane]), F::splat(self.slopes[1][lane])],
+            origin: spread(&self.origin, lane),
+            sign: F::splat(self.sign[lane]),
+            error: F::splat(self.error[lane]),
+            twice: F::splat(2.0 * self.error[lane]),
         }
     }
 }

@@ -186,16 +186,15 @@ impl Work for SideBySide<'_, '_> {
         }
         let rows = rays.chunks(WIDTH).zip(t_max.chunks(WIDTH)).zip(hits.chunks_mut(WIDTH));
         for ((some, limits), hits) in rows {
-            let (mut rays, mut t_max, mut found) = ([some[0]; WIDTH], [0.0; WIDTH], [None; WIDTH]);
+            let (mut t_max, mut found) = ([0.0; WIDTH], [None; WIDTH]);
             let (mut origin, mut direction) = ([[0.0; WIDTH]; 3], [[0.0; WIDTH]; 3]);
-            rays[..some.len()].copy_from_slice(some);
             t_max[..some.len()].copy_from_slice(limits);
-            for lane in 0..WIDTH {
+            for (lane, ray) in some.iter().enumerate() {
                 for axis in 0..3 {
-                    (origin[axis][lane], direction[axis][lane]) = (rays[lane].origin[axis], rays[lane].direction[axis]);
+                    (origin[axis][lane], direction[axis][lane]) = (ray.origin[axis], ray.direction[axis]);
                 }
             }
-            let row = RayRow { rays: &rays, origin: &origin, direction: &direction };
+            let row = RayRow { origin: &origin, direction: &direction };
             mesh.intersect_together::<L>(row, Bits::first(some.len()), &t_max, &mut found);
             hits.copy_from_slice(&found[..some.len()]);
         }

@@ -13,6 +13,7 @@ use snell_math::Ray;
 use snell_math::lanes::{Eight, Floats, Lanes, WIDTH, Work, dispatch};
 
 use super::blocks::{BlockRay, TriangleBlock};
+use super::spaces::RaySpaces;
 use super::watertight::{Meeting, RaySpace};
 use super::{MeshHit, TriangleMesh};
 use crate::accel::wide::{Approach, BoxRay, Measure, NONE, Probe, Slabs, Stack, Visited, number, take_lane};
@@ -31,10 +32,33 @@ struct Waiting {
 
 /// What a search needs of the mesh and of its ray.
 #[derive(Clone, Copy)]
-pub(super) struct Question<'a> {
+pub(super) struct Question<'a, S> {
     pub(super) blocks: &'a [TriangleBlock],
-    pub(super) space: &'a RaySpace,
+    pub(super) space: S,
     pub(super) measure: Measure,
+}
+
+/// Where the space of a ray is known, to be looked up where it is needed, which is seldom.
+pub(super) trait KnownSpace: Copy {
+    fn look_up(self) -> RaySpace;
+}
+
+impl KnownSpace for &RaySpace {
+    #[inline(always)]
+    fn look_up(self) -> RaySpace {
+        *self
+    }
+}
+
+/// The space of one of the rays side by side.
+#[derive(Clone, Copy)]
+pub(super) struct LaneSpace<'a>(pub(super) &'a RaySpaces, pub(super) usize);
+
+impl KnownSpace for LaneSpace<'_> {
+    #[inline(always)]
+    fn look_up(self) -> RaySpace {
+        self.0.space(self.1)
+    }
 }
 
 /// A search for the closest hit.
@@ -62,25 +86,24 @@ impl Search {
 
     /// Decides about one triangle.
     #[inline]
-    fn decide<L: Lanes>(&mut self, question: &Question, block: &TriangleBlock, lane: usize) {
-        if let Some(meeting) = question.space.meet::<L>(block.corners(lane)) {
-            self.take(block, lane, meeting);
+    fn decide<L: Lanes>(&mut self, question: &Question<impl KnownSpace>, block: &TriangleBlock, lane: usize) {
+        if let Some(meeting) = question.space.look_up().meet::<L>(block.corners(lane)) {
+            self.take(number(block.triangles[lane]), meeting);
         }
     }
 
     /// Takes one triangle that is surely met.
     #[inline(always)]
-    fn take_surely<L: Lanes>(&mut self, question: &Question, block: &TriangleBlock, lane: usize) {
-        let space = question.space;
+    fn take_surely<L: Lanes>(&mut self, question: &Question<impl KnownSpace>, block: &TriangleBlock, lane: usize) {
+        let space = question.space.look_up();
         if let Some(meeting) = space.meet_surely::<L>(&block.corners_on(space.axes(), lane)) {
-            self.take(block, lane, meeting);
+            self.take(number(block.triangles[lane]), meeting);
         }
     }
 
     /// Takes a meeting for the best where it is.
     #[inline(always)]
-    fn take(&mut self, block: &TriangleBlock, lane: usize, meeting: Meeting) {
-        let triangle = number(block.triangles[lane]);
+    pub(super) fn take(&mut self, triangle: u32, meeting: Meeting) {
         let wins_tie = || meeting.t == self.t_max && self.best.is_none_or(|(other, _)| triangle < other);
         if self.t_min < meeting.t && (meeting.t < self.t_max || wins_tie()) {
             self.t_max = meeting.t;
@@ -88,19 +111,34 @@ impl Search {
         }
     }
 
-    /// Decides about those that wait and are not surely beyond the limit.
+    /// The place, block and lane, of one that waits and is not surely beyond the limit; it waits no more.
     #[inline(always)]
-    fn settle<L: Lanes>(&mut self, question: &Question, limit: f32) {
+    pub(super) fn next_waiting(&mut self, limit: f32) -> Option<(usize, usize)> {
         while let Some(Waiting { low, block, lane }) = self.waiting.pop(&mut self.count) {
             if low <= limit {
-                self.take_surely::<L>(question, &question.blocks[block as usize], lane as usize);
+                return Some((block as usize, lane as usize));
             }
+        }
+        None
+    }
+
+    /// Decides about those that wait and are not surely beyond the limit.
+    #[inline(always)]
+    fn settle<L: Lanes>(&mut self, question: &Question<impl KnownSpace>, limit: f32) {
+        while let Some((block, lane)) = self.next_waiting(limit) {
+            self.take_surely::<L>(question, &question.blocks[block], lane);
         }
     }
 
     /// Looks at a leaf, and lowers the limit by what is found.
     #[inline(always)]
-    pub(super) fn leaf<L: Lanes>(&mut self, question: &Question, ray: &BlockRay<L::Eight>, leaf: u32, limit: &mut f32) {
+    pub(super) fn leaf<L: Lanes>(
+        &mut self,
+        question: &Question<impl KnownSpace>,
+        ray: &BlockRay<L::Eight>,
+        leaf: u32,
+        limit: &mut f32,
+    ) {
         let block = &question.blocks[leaf as usize];
         let Some(verdict) = ray.look(block, L::Eight::splat(*limit)) else { return };
         let (low, high) = (verdict.low.to_array(), verdict.high.to_array());
@@ -137,7 +175,7 @@ impl Search {
 
     /// Forgets those that are surely beyond the limit; decides where that leaves no room.
     #[cold]
-    fn make_room<L: Lanes>(&mut self, question: &Question, limit: f32) {
+    fn make_room<L: Lanes>(&mut self, question: &Question<impl KnownSpace>, limit: f32) {
         let (mut kept, mut count) = (Stack::new(), 0);
         while let Some(waiting) = self.waiting.pop(&mut self.count) {
             if waiting.low <= limit {
@@ -152,16 +190,23 @@ impl Search {
 
     /// The closest hit, after all leaves have been looked at.
     #[inline(always)]
-    pub(super) fn finish<L: Lanes>(&mut self, question: &Question, limit: f32) -> Option<MeshHit> {
+    pub(super) fn finish<L: Lanes>(&mut self, question: &Question<impl KnownSpace>, limit: f32) -> Option<MeshHit> {
         // As with most rays that hit: what is met need not be written down to be compared with another.
         if self.count == 1 && self.best.is_none() {
             let Waiting { block, lane, .. } = self.waiting.pop(&mut self.count)?;
             let (block, lane) = (&question.blocks[block as usize], lane as usize);
-            let meeting = question.space.meet_surely::<L>(&block.corners_on(question.space.axes(), lane))?;
+            let space = question.space.look_up();
+            let meeting = space.meet_surely::<L>(&block.corners_on(space.axes(), lane))?;
             let is_in_range = meeting.is_within(self.t_min, self.t_max);
             return is_in_range.then(|| MeshHit::new(number(block.triangles[lane & (WIDTH - 1)]), meeting));
         }
         self.settle::<L>(question, limit);
+        self.hit()
+    }
+
+    /// The closest hit of those that have been decided about.
+    #[inline(always)]
+    pub(super) fn hit(&self) -> Option<MeshHit> {
         self.best.map(|(triangle, meeting)| MeshHit::new(triangle, meeting))
     }
 }
@@ -227,7 +272,7 @@ fn filled(block: &TriangleBlock) -> impl Iterator<Item = usize> {
 pub(super) fn is_met_in<L: Lanes>(
     block: &TriangleBlock,
     ray: &BlockRay<L::Eight>,
-    space: &RaySpace,
+    space: impl KnownSpace,
     limit: L::Eight,
     surely_before: L::Eight,
     t_min: f64,
@@ -241,6 +286,10 @@ pub(super) fn is_met_in<L: Lanes>(
     // Those surely in front of the range or behind it are left out.
     let mut sure = verdict.sure & zero.le(verdict.high.lesser(limit - verdict.low)).mask();
     let mut unsure = verdict.unsure;
+    if sure | unsure == 0 {
+        return false;
+    }
+    let space = space.look_up();
     while sure != 0 {
         let meeting = space.meet_surely::<L>(&block.corners_on(space.axes(), take_lane(&mut sure)));
         if meeting.is_some_and(|meeting| meeting.is_within(t_min, t_max)) {
@@ -306,7 +355,7 @@ impl<V: FnMut(MeshHit) -> ControlFlow<()>> Once<'_, V> {
     fn decide<L: Lanes>(&mut self, block: &TriangleBlock, lane: usize) -> ControlFlow<()> {
         match self.space.meet::<L>(block.corners(lane)) {
             Some(meeting)
-                if meeting.is_within(self.t_min, self.t_max) && self.visited.is_new(block.triangles[lane]) =>
+                if meeting.is_within(self.t_min, self.t_max) && self.visited.is_new(0, block.triangles[lane]) =>
             {
                 (self.visit)(MeshHit::new(number(block.triangles[lane]), meeting))
             }

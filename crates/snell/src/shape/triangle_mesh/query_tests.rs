@@ -14,7 +14,7 @@ use crate::accel::wide::{Approach, Probe, number};
 
 /// Kinds of meshes that filters have fallen over.
 #[derive(Clone, Copy, Debug)]
-enum Kind {
+pub(super) enum Kind {
     /// Of all sizes, some twice, some without area.
     Soup,
     /// Long and thin in all directions.
@@ -29,9 +29,9 @@ enum Kind {
     Scales,
 }
 
-const KINDS: [Kind; 6] = [Kind::Soup, Kind::Needles, Kind::Fan, Kind::Grid, Kind::Copies, Kind::Scales];
+pub(super) const KINDS: [Kind; 6] = [Kind::Soup, Kind::Needles, Kind::Fan, Kind::Grid, Kind::Copies, Kind::Scales];
 
-fn mesh_of(kind: Kind, count: usize, scale: f64, offset: Vector3, random: &mut Random) -> TriangleMesh {
+pub(super) fn mesh_of(kind: Kind, count: usize, scale: f64, offset: Vector3, random: &mut Random) -> TriangleMesh {
     let mut positions: Vec<Vector3> = Vec::new();
     let mut triangles = Vec::new();
     for i in 0..count {
@@ -79,7 +79,7 @@ fn mesh_of(kind: Kind, count: usize, scale: f64, offset: Vector3, random: &mut R
 }
 
 /// A ray of a kind that depends on `i`: at vertices, edges and faces, along edges, parallel to axes, from afar and from within.
-fn ray_of(i: usize, mesh: &TriangleMesh, scale: f64, random: &mut Random) -> Ray {
+pub(super) fn ray_of(i: usize, mesh: &TriangleMesh, scale: f64, random: &mut Random) -> Ray {
     let [a, b, c] = mesh.triangle(random.index(mesh.triangles.len()) as u32);
     let target = match i % 4 {
         0 => a,

@@ -1,53 +1,32 @@
 //! Rays side by side and a mesh: through its hierarchy together, and each triangle by the same tests as one ray alone.
 
-use snell_math::Ray;
+use std::ops::ControlFlow;
+
 use snell_math::lanes::{Bits, Eight, Floats, LaneVector, Lanes, WIDTH, Work};
+use snell_math::{Point3, Ray, Vector3};
 
-use super::blocks::{BlockLine, BlockRay};
-use super::queries::{Question, Search, is_met_in};
-use super::watertight::RaySpace;
+use super::blocks::{BlockLines, TriangleBlock};
+use super::queries::{LaneSpace, Question, Search, is_met_in};
+use super::spaces::{Corners, RaySpaces};
 use super::{MeshHit, TriangleMesh};
-use crate::accel::wide::{Finder, Group, Seeker};
+use crate::accel::wide::{Finder, Group, Seeker, Visited, number, take_lane};
 
-/// Rays side by side, in the space of the mesh: each by itself, and all in rows.
+/// Rays side by side, in the space of the mesh.
 #[derive(Clone, Copy)]
 pub(crate) struct RayRow<'a> {
-    pub(crate) rays: &'a [Ray; WIDTH],
     pub(crate) origin: &'a [[f64; WIDTH]; 3],
     pub(crate) direction: &'a [[f64; WIDTH]; 3],
 }
 
-/// Rays made ready for a mesh.
-struct Ready {
-    group: Group,
-    spaces: [RaySpace; WIDTH],
-    triangles: [BlockLine; WIDTH],
-}
-
-impl Ready {
+impl RayRow<'_> {
     #[inline(always)]
-    fn new<L: Lanes>(mesh: &TriangleMesh, row: &RayRow, active: Bits, t_max: &[f64; WIDTH]) -> Self {
-        let (origin, direction) = (LaneVector::<L>::load(row.origin, 0), LaneVector::load(row.direction, 0));
-        let mut ready = Self {
-            group: Group::new(&mesh.tree, origin, direction, active, t_max),
-            spaces: [RaySpace::NOTHING; WIDTH],
-            triangles: [BlockLine::NOTHING; WIDTH],
-        };
-        for lane in ready.group.plain.lanes() {
-            match RaySpace::new(&row.rays[lane]) {
-                Some(space) => {
-                    ready.triangles[lane] = BlockLine::new(&ready.group.probe(lane), &space);
-                    ready.spaces[lane] = space;
-                }
-                None => ready.group.plain = ready.group.plain.without(Bits::lane(lane)),
-            }
-        }
-        ready
+    fn lanes<L: Lanes>(&self) -> [LaneVector<L>; 2] {
+        [LaneVector::load(self.origin, 0), LaneVector::load(self.direction, 0)]
     }
 
-    #[inline(always)]
-    fn question<'a>(&'a self, mesh: &'a TriangleMesh, lane: usize) -> Question<'a> {
-        Question { blocks: &mesh.blocks, space: &self.spaces[lane], measure: self.group.measure(lane) }
+    fn ray(&self, lane: usize) -> Ray {
+        let [origin, direction] = [self.origin, self.direction].map(|rows| rows.map(|row| row[lane]));
+        Ray::new(Point3::from(origin), Vector3::from(direction))
     }
 }
 
@@ -62,8 +41,10 @@ struct Closest<'a> {
 
 struct ClosestAtLeaves<'a, 'r, L: Lanes> {
     mesh: &'a TriangleMesh,
-    ready: &'r Ready,
-    searches: [Search; WIDTH],
+    group: &'r Group,
+    spaces: &'r RaySpaces,
+    triangles: &'r BlockLines,
+    searches: &'r mut [Search; WIDTH],
     lanes: std::marker::PhantomData<L>,
 }
 
@@ -76,9 +57,39 @@ impl<L: Lanes> Seeker for ClosestAtLeaves<'_, '_, L> {
     #[inline(always)]
     fn leaf(&mut self, leaf: u32, rays: Bits, limits: &mut [f32; WIDTH]) {
         for lane in rays.lanes() {
-            let ray = BlockRay::<L::Eight>::spread(&self.ready.triangles[lane]);
-            let question = self.ready.question(self.mesh, lane);
+            let ray = self.triangles.spread::<L::Eight>(self.spaces.axes, lane);
+            let (space, measure) = (LaneSpace(self.spaces, lane), self.group.measure(lane));
+            let question = Question { blocks: &self.mesh.blocks, space, measure };
             self.searches[lane].leaf::<L>(&question, &ray, leaf, &mut limits[lane]);
+        }
+    }
+}
+
+impl<L: Lanes> ClosestAtLeaves<'_, '_, L> {
+    /// Decides about what waits, a triangle of each ray at a time.
+    #[inline(always)]
+    fn settle(&mut self, mut rays: Bits, limits: &[f32; WIDTH]) {
+        let (mut corners, mut triangles) = (Corners::NOTHING, [0; WIDTH]);
+        loop {
+            for lane in rays.lanes() {
+                match self.searches[lane].next_waiting(limits[lane]) {
+                    Some((block, place)) => {
+                        let block = &self.mesh.blocks[block];
+                        corners.put(lane, &block.corners_on(self.spaces.axes.of(lane), place));
+                        triangles[lane] = number(block.triangles[place]);
+                    }
+                    None => rays = rays.without(Bits::lane(lane)),
+                }
+            }
+            if rays.is_empty() {
+                return;
+            }
+            let meetings = self.spaces.meet::<L>(corners.lanes()).rows();
+            for lane in rays.lanes() {
+                if let Some(meeting) = meetings.of(lane, self.spaces, &corners) {
+                    self.searches[lane].take(triangles[lane], meeting);
+                }
+            }
         }
     }
 }
@@ -88,19 +99,29 @@ impl Work for Closest<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let Self { mesh, row, active, t_max, hits } = self;
-        let ready = Ready::new::<L>(mesh, &row, active, t_max);
-        let mut searches = [const { Search::new(0.0, 0.0) }; WIDTH];
-        for lane in ready.group.plain.lanes() {
+        let ([origin, direction], end) = (row.lanes::<L>(), L::load(t_max, 0));
+        let probes = mesh.tree.approach_together(origin, direction, active, end);
+        for lane in probes.strange.lanes() {
+            hits[lane] = mesh.intersect(&row.ray(lane), 0.0, t_max[lane]);
+        }
+        let spaces = &RaySpaces::new(origin, direction);
+        let rays = probes.plain & spaces.usable;
+        if rays.is_empty() {
+            return;
+        }
+        let group = &Group::new(&probes, end);
+        let triangles = &BlockLines::new(&probes, spaces.axes);
+        let searches = &mut [const { Search::new(0.0, 0.0) }; WIDTH];
+        for lane in rays.lanes() {
             searches[lane].restrict(t_max[lane]);
         }
-        let mut seeker = ClosestAtLeaves::<L> { mesh, ready: &ready, searches, lanes: std::marker::PhantomData };
-        let mut limits = ready.group.limits;
-        ready.group.nearest_in::<L::Eight>(&mesh.tree, &mut limits, &mut seeker);
-        for lane in ready.group.plain.lanes() {
-            hits[lane] = seeker.searches[lane].finish::<L>(&ready.question(mesh, lane), limits[lane]);
-        }
-        for lane in ready.group.strange.lanes() {
-            hits[lane] = mesh.intersect(&row.rays[lane], 0.0, t_max[lane]);
+        let mut limits = group.limits;
+        let lanes = std::marker::PhantomData;
+        let mut seeker = ClosestAtLeaves::<L> { mesh, group, spaces, triangles, searches, lanes };
+        group.nearest_in::<L::Eight>(&mesh.tree, rays, &mut limits, &mut seeker);
+        seeker.settle(rays, &limits);
+        for lane in rays.lanes() {
+            hits[lane] = seeker.searches[lane].hit();
         }
     }
 }
@@ -115,7 +136,9 @@ struct Any<'a> {
 
 struct AnyAtLeaves<'a, 'r, L: Lanes> {
     mesh: &'a TriangleMesh,
-    ready: &'r Ready,
+    group: &'r Group,
+    spaces: &'r RaySpaces,
+    triangles: &'r BlockLines,
     t_max: &'a [f64; WIDTH],
     met: Bits,
     lanes: std::marker::PhantomData<L>,
@@ -129,15 +152,15 @@ impl<L: Lanes> Finder for AnyAtLeaves<'_, '_, L> {
 
     #[inline(always)]
     fn leaf(&mut self, leaf: u32, rays: Bits) -> Bits {
-        let Ready { group, spaces, triangles } = self.ready;
         let block = &self.mesh.blocks[leaf as usize];
         let mut met = Bits::NONE;
         for lane in rays.lanes() {
-            let ray = BlockRay::<L::Eight>::spread(&triangles[lane]);
+            let ray = self.triangles.spread::<L::Eight>(self.spaces.axes, lane);
             let t_max = self.t_max[lane];
-            let limit = L::Eight::splat(group.limits[lane]);
-            let surely_before = L::Eight::splat(group.measure(lane).surely_before(t_max));
-            if is_met_in::<L>(block, &ray, &spaces[lane], limit, surely_before, 0.0, t_max) {
+            let limit = L::Eight::splat(self.group.limits[lane]);
+            let surely_before = L::Eight::splat(self.group.measure(lane).surely_before(t_max));
+            let space = LaneSpace(self.spaces, lane);
+            if is_met_in::<L>(block, &ray, space, limit, surely_before, 0.0, t_max) {
                 met |= Bits::lane(lane);
             }
         }
@@ -151,17 +174,132 @@ impl Work for Any<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) -> Bits {
         let Self { mesh, row, active, t_max } = self;
-        let ready = Ready::new::<L>(mesh, &row, active, t_max);
+        let ([origin, direction], end) = (row.lanes::<L>(), L::load(t_max, 0));
+        let probes = mesh.tree.approach_together(origin, direction, active, end);
+        let mut met = Bits::NONE;
+        for lane in probes.strange.lanes() {
+            met |= Bits::all_if(mesh.any(&row.ray(lane), 0.0, t_max[lane])) & Bits::lane(lane);
+        }
+        let spaces = &RaySpaces::new(origin, direction);
+        let rays = probes.plain & spaces.usable;
+        if rays.is_empty() {
+            return met;
+        }
+        let group = &Group::new(&probes, end);
+        let triangles = &BlockLines::new(&probes, spaces.axes);
         let lanes = std::marker::PhantomData;
-        let mut finder = AnyAtLeaves::<L> { mesh, ready: &ready, t_max, met: Bits::NONE, lanes };
-        ready.group.each_in::<L::Eight>(&mesh.tree, &mut finder);
-        let mut met = finder.met;
-        for lane in ready.group.strange.lanes() {
-            if mesh.any(&row.rays[lane], 0.0, t_max[lane]) {
-                met |= Bits::lane(lane);
+        let mut finder = AnyAtLeaves::<L> { mesh, group, spaces, triangles, t_max, met, lanes };
+        group.each_in::<L::Eight>(&mesh.tree, rays, &mut finder);
+        finder.met
+    }
+}
+
+/// The question for all hits.
+struct Each<'a, V> {
+    mesh: &'a TriangleMesh,
+    row: RayRow<'a>,
+    active: Bits,
+    t_max: &'a [f64; WIDTH],
+    visit: V,
+}
+
+struct EachAtLeaves<'a, 'r, L: Lanes, V> {
+    mesh: &'a TriangleMesh,
+    group: &'r Group,
+    spaces: &'r RaySpaces,
+    triangles: &'r BlockLines,
+    t_max: &'a [f64; WIDTH],
+    visited: Visited,
+    visit: V,
+    broken: Bits,
+    lanes: std::marker::PhantomData<L>,
+}
+
+impl<L: Lanes, V: FnMut(usize, MeshHit) -> ControlFlow<()>> EachAtLeaves<'_, '_, L, V> {
+    /// Decides about the triangles of a block that rays may meet, one of each ray at a time; the rays that break off.
+    #[inline(always)]
+    fn decide(&mut self, block: &TriangleBlock, mut rays: Bits, candidates: &mut [u32; WIDTH]) -> Bits {
+        let (mut corners, mut places, mut broken) = (Corners::NOTHING, [0; WIDTH], Bits::NONE);
+        while rays.any() {
+            for lane in rays.lanes() {
+                places[lane] = take_lane(&mut candidates[lane]);
+                corners.put(lane, &block.corners_on(self.spaces.axes.of(lane), places[lane]));
+            }
+            let meeting = self.spaces.meet::<L>(corners.lanes());
+            let (seen, rows) = (meeting.seen(), meeting.rows());
+            for lane in rays.lanes() {
+                let meeting = if seen.has(lane) {
+                    rows.of(lane, self.spaces, &corners)
+                } else {
+                    self.spaces.space(lane).meet::<L>(block.corners(places[lane]))
+                };
+                if let Some(meeting) = meeting
+                    && meeting.is_within(0.0, self.t_max[lane])
+                    && self.visited.is_new(lane, block.triangles[places[lane]])
+                    && (self.visit)(lane, MeshHit::new(number(block.triangles[places[lane]]), meeting)).is_break()
+                {
+                    broken |= Bits::lane(lane);
+                    candidates[lane] = 0;
+                }
+                if candidates[lane] == 0 {
+                    rays = rays.without(Bits::lane(lane));
+                }
             }
         }
-        met
+        broken
+    }
+}
+
+impl<L: Lanes, V: FnMut(usize, MeshHit) -> ControlFlow<()>> Finder for EachAtLeaves<'_, '_, L, V> {
+    #[inline(always)]
+    fn prefetch(&self, leaf: u32) {
+        L::Eight::prefetch(&self.mesh.blocks[leaf as usize]);
+    }
+
+    #[inline(always)]
+    fn leaf(&mut self, leaf: u32, rays: Bits) -> Bits {
+        let block = &self.mesh.blocks[leaf as usize];
+        let (mut candidates, mut open) = ([0; WIDTH], Bits::NONE);
+        for lane in rays.lanes() {
+            let ray = self.triangles.spread::<L::Eight>(self.spaces.axes, lane);
+            if let Some(verdict) = ray.look(block, L::Eight::splat(self.group.limits[lane])) {
+                candidates[lane] = verdict.sure | verdict.unsure;
+                open |= Bits::lane(lane) & Bits::all_if(candidates[lane] != 0);
+            }
+        }
+        if open.is_empty() {
+            return Bits::NONE;
+        }
+        let broken = self.decide(block, open, &mut candidates);
+        self.broken |= broken;
+        broken
+    }
+}
+
+impl<V: FnMut(usize, MeshHit) -> ControlFlow<()>> Work for Each<'_, V> {
+    type Output = Bits;
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Bits {
+        let Self { mesh, row, active, t_max, mut visit } = self;
+        let ([origin, direction], end) = (row.lanes::<L>(), L::load(t_max, 0));
+        let probes = mesh.tree.approach_together(origin, direction, active, end);
+        let mut broken = Bits::NONE;
+        for lane in probes.strange.lanes() {
+            let is_broken = mesh.for_each_hit(&row.ray(lane), 0.0, t_max[lane], |hit| visit(lane, hit)).is_break();
+            broken |= Bits::all_if(is_broken) & Bits::lane(lane);
+        }
+        let spaces = &RaySpaces::new(origin, direction);
+        let rays = probes.plain & spaces.usable;
+        if rays.is_empty() {
+            return broken;
+        }
+        let group = &Group::new(&probes, end);
+        let triangles = &BlockLines::new(&probes, spaces.axes);
+        let visited = Visited::default();
+        let lanes = std::marker::PhantomData;
+        let mut finder = EachAtLeaves::<L, _> { mesh, group, spaces, triangles, t_max, visited, visit, broken, lanes };
+        group.each_in::<L::Eight>(&mesh.tree, rays, &mut finder);
+        finder.broken
     }
 }
 
@@ -203,5 +341,17 @@ impl TriangleMesh {
     #[inline(always)]
     pub(crate) fn any_together<L: Lanes>(&self, row: RayRow, active: Bits, t_max: &[f64; WIDTH]) -> Bits {
         L::stage(Any { mesh: self, row, active, t_max })
+    }
+
+    /// [`TriangleMesh::for_each_hit`] of the active ones of rays side by side, from t > 0 on; returns those for which `visit` broke.
+    #[inline(always)]
+    pub(crate) fn each_together<L: Lanes>(
+        &self,
+        row: RayRow,
+        active: Bits,
+        t_max: &[f64; WIDTH],
+        visit: impl FnMut(usize, MeshHit) -> ControlFlow<()>,
+    ) -> Bits {
+        L::stage(Each { mesh: self, row, active, t_max, visit })
     }
 }

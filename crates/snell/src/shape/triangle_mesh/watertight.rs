@@ -48,8 +48,11 @@ impl Meeting {
 }
 
 impl RaySpace {
-    /// What stands in for one where there is none.
-    pub(super) const NOTHING: Self = Self { origin: [0.0; 3], axes: [0, 1, 2], shear: [0.0; 3] };
+    /// Of what was worked out elsewhere.
+    #[inline(always)]
+    pub(super) const fn of_parts(origin: [f64; 3], axes: [usize; 3], shear: [f64; 3]) -> Self {
+        Self { origin, axes, shear }
+    }
 
     /// `None` where the direction is zero or anything is not finite: such a ray meets nothing.
     #[inline(always)]
@@ -169,7 +172,7 @@ fn exact_edge(from: &[f64; 3], to: &[f64; 3]) -> f64 {
 }
 
 /// Below this, products may be too small for their errors to be numbers, and instructions might differ.
-const SMALL: f64 = 1e-200;
+pub(super) const SMALL: f64 = 1e-200;
 
 /// [`exact_edge`] for the three edges that are opposite to the corners.
 #[inline(always)]
@@ -188,6 +191,12 @@ fn exact_edges_anywhere(p: &[f64; 3], q: &[f64; 3], r: &[f64; 3]) -> [f64; 3] {
 fn exact_cross<L: Lanes>(from: &[f64; 3], to: &[f64; 3]) -> f64 {
     let (left, right) = (from[0] * to[1], from[1] * to[0]);
     let (left_error, right_error) = (L::product_error(from[0], to[1], left), L::product_error(from[1], to[0], right));
+    exact_difference(left, right, left_error, right_error)
+}
+
+/// The difference of two products whose errors are known, as exact as [`exact_edge`].
+#[inline(always)]
+pub(super) fn exact_difference<L: Lanes>(left: L, right: L, left_error: L, right_error: L) -> L {
     // Where the products do not nearly cancel, the first term decides. Where they do, their difference has no error
     // (Sterbenz), that of their errors is a sum of two terms, and what does not fit into `high` is less than its last
     // place or the last place of the two terms that cancel.
@@ -199,7 +208,7 @@ fn exact_cross<L: Lanes>(from: &[f64; 3], to: &[f64; 3]) -> f64 {
 
 /// a + b = first + second (Knuth).
 #[inline(always)]
-fn exact_sum(a: f64, b: f64) -> (f64, f64) {
+fn exact_sum<L: Lanes>(a: L, b: L) -> (L, L) {
     let sum = a + b;
     let b_part = sum - a;
     (sum, (a - (sum - b_part)) + (b - b_part))
