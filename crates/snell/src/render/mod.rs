@@ -1,12 +1,13 @@
 //! The main loop: passes over tiles, in parallel, with progress and cancelling.
 //!
-//! A first pass gives every pixel its first samples. With adaptive antialiasing, further passes give more to those pixels
-//! whose neighbourhood or whose own samples differ, always the next ones of the same fixed sequence. What a pass decides, it
-//! decides from the finished pass before, so tiles and threads do not matter.
+//! A first pass gives every pixel its first samples. With adaptive antialiasing, a second one gives more to those pixels whose
+//! neighbourhood differs, and again more where a pixel's own samples do, always the next ones of the same fixed sequence. The
+//! second pass decides from the finished first one, and then for each pixel by itself, so tiles and threads do not matter.
 
 mod adaptive;
 mod layers;
 mod paths;
+mod refine;
 mod settings;
 #[cfg(test)]
 mod tests;
@@ -32,8 +33,8 @@ use crate::film::PixelSum;
 use crate::geometry::Hit;
 use crate::integrator::{Integrator, Rules};
 use crate::observe::NoObserver;
-use crate::render::adaptive::{Display, Range};
 use crate::render::layers::{FirstHit, FirstHits};
+use crate::render::refine::Refined;
 use crate::statistics::{SamplePlace, Statistics};
 use crate::task::RayRows;
 use crate::trace::{CameraRays, FirstHitWatch, Scratch, Tracer};
@@ -234,15 +235,6 @@ struct Gathered {
     statistics: Statistics,
 }
 
-/// A pixel that needs more samples than those of the first pass.
-#[derive(Clone, Copy)]
-struct Refined {
-    pixel: Pixel,
-    sum: PixelSum,
-    /// Of all its samples.
-    range: Range,
-}
-
 /// The buffers of one worker.
 #[derive(Default)]
 struct Worker {
@@ -250,6 +242,7 @@ struct Worker {
     pixels: Vec<Pixel>,
     means: Vec<Rgb>,
     first_hits: Vec<FirstHit>,
+    refined: Vec<Refined>,
 }
 
 impl<I: Integrator<State = ()>> Job<'_, I> {
@@ -264,16 +257,17 @@ impl<I: Integrator<State = ()>> Job<'_, I> {
         let tiles = self.tiles();
         let samples = Samples::new(passes.next().unwrap_or(0..1));
         progress.pass(0, u64::from(width) * u64::from(height));
-        tiles.par_iter().for_each_init(Worker::default, |worker, tile| {
+        // One after the other, whichever thread is free: some tiles take much longer than others.
+        tiles.iter().par_bridge().for_each_init(Worker::default, |worker, tile| {
             if !progress.is_cancelled() {
                 self.render_tile(tile, &samples, worker, &gathered, progress);
             }
         });
-        let Gathered { mut image, first_hits, mut statistics } =
-            gathered.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
         if self.settings.is_adaptive() && !progress.is_cancelled() {
-            self.refine(passes, &tiles, &mut image, &mut statistics, progress);
+            self.refine(passes, &tiles, &gathered, progress);
         }
+        let Gathered { image, first_hits, statistics } =
+            gathered.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
         let layers = first_hits.map(FirstHits::into_layers);
         Rendering { image, layers, statistics, complete: !progress.is_cancelled() }
     }
@@ -288,7 +282,7 @@ impl<I: Integrator<State = ()>> Job<'_, I> {
         progress: &dyn Progress,
     ) {
         let per_pixel = samples.places.len();
-        let Worker { scratch, pixels, means, first_hits } = worker;
+        let Worker { scratch, pixels, means, first_hits, .. } = worker;
         pixels.clear();
         pixels.extend(tile.pixels());
         means.clear();
@@ -337,85 +331,6 @@ impl<I: Integrator<State = ()>> Job<'_, I> {
         }
         drop(gathered);
         progress.advance(pixels.len() as u64, statistics.rays());
-    }
-
-    /// Takes more samples where the picture needs them, pass by pass.
-    fn refine(
-        &self,
-        passes: impl Iterator<Item = std::ops::Range<u32>>,
-        tiles: &[Tile],
-        image: &mut Image<Rgb>,
-        statistics: &mut Statistics,
-        progress: &dyn Progress,
-    ) {
-        let display = Display::new(self.settings, 1);
-        let unsettled = adaptive::unsettled(image, &display);
-        // In the order of tiles, so that neighbours are traced together.
-        let width = self.settings.width;
-        let mut refined: Vec<Refined> = tiles
-            .iter()
-            .flat_map(Tile::pixels)
-            .filter(|pixel| unsettled[pixel.place(width)])
-            .map(|pixel| {
-                let mean = image.pixels()[pixel.place(width)];
-                Refined { pixel, sum: PixelSum::of_one(mean), range: display.range(&[mean]) }
-            })
-            .collect();
-        for (number, samples) in (1..).zip(passes) {
-            let samples = Samples::new(samples);
-            progress.pass(number, refined.len() as u64);
-            let portion = (MAX_QUEUE / samples.places.len()).max(1);
-            let counted = refined
-                .par_chunks_mut(portion)
-                .map_init(Worker::default, |worker, portion| {
-                    self.refine_portion(portion, &samples, &display, worker, progress)
-                })
-                .reduce(Statistics::default, |mut sum, part| {
-                    sum.merge(&part);
-                    sum
-                });
-            statistics.merge(&counted);
-            for Refined { pixel, sum, .. } in &refined {
-                image.pixels_mut()[pixel.place(width)] = sum.mean();
-            }
-            if progress.is_cancelled() {
-                return;
-            }
-            let display = Display::new(self.settings, samples.first + samples.places.len() as u32);
-            refined.retain(|pixel| display.is_wide(&pixel.range));
-        }
-    }
-
-    /// Takes the samples of a later pass in some pixels.
-    fn refine_portion(
-        &self,
-        portion: &mut [Refined],
-        samples: &Samples,
-        display: &Display,
-        worker: &mut Worker,
-        progress: &dyn Progress,
-    ) -> Statistics {
-        let mut statistics = Statistics::default();
-        if progress.is_cancelled() {
-            return statistics;
-        }
-        let Worker { scratch, pixels, .. } = worker;
-        pixels.clear();
-        pixels.extend(portion.iter().map(|refined| refined.pixel));
-        let rays = TileRays { camera: self.camera, pixels, samples };
-        let mut watch = |_: usize, ray: &Ray, hit: &mut Option<Hit>| self.cut_far(ray, hit);
-        let watch: Option<&mut FirstHitWatch<'_>> = if self.has_far_plane() { Some(&mut watch) } else { None };
-        let colors = self.tracer().trace(&rays, scratch, &mut statistics, &mut NoObserver, watch);
-        for (refined, colors) in portion.iter_mut().zip(colors.chunks_exact(samples.places.len())) {
-            for (sample, &color) in (samples.first..).zip(colors) {
-                if !refined.sum.add(color) {
-                    statistics.add_nonfinite(refined.pixel.sample(sample));
-                }
-            }
-            refined.range = refined.range.including(&display.range(colors));
-        }
-        progress.advance(portion.len() as u64, statistics.rays());
-        statistics
     }
 
     /// The ray of a sample through a place in a pixel, and the number of the place where it splits white light.

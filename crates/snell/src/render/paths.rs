@@ -210,7 +210,8 @@ fn run_paths(
         }
         let job = Job { scene, integrator: &integrator, camera, settings };
         let counted = estimates
-            .par_chunks_mut(MAX_QUEUE)
+            .chunks_mut(MAX_QUEUE)
+            .par_bridge()
             .map_init(Worker::default, |worker, portion| {
                 job.trace_portion(portion, paths, sample, worker, &first_hits, progress)
             })

@@ -82,7 +82,7 @@ fn adaptive_pictures_look_closer_at_edges_only() {
     let compiled = CompiledScene::build(&scene).expect("it compiles");
     let told = Told { tiles_until_cancelled: u64::MAX, ..Told::default() };
     let rendering = render(&compiled, &settings(&scene, 64, 48), &told).expect("a camera");
-    assert!(rendering.complete && told.passes.into_inner() == 3);
+    assert!(rendering.complete && told.passes.into_inner() == 2);
     let rays = rendering.statistics.camera_rays;
     assert_eq!((told.announced.into_inner(), told.rays.into_inner()), (told.advanced.into_inner(), rays));
     // One in each pixel, and up to sixteen along the ball's edge, about 2 π 17 pixels long.
