@@ -4,8 +4,10 @@
 //! space has its hierarchy. Shapes that keep their kind under their transform are brought into their space when the scene is
 //! compiled, so most rays are never transformed.
 
+mod blocked;
 mod blockers;
 mod emitting;
+mod lane_surfaces;
 mod lanes;
 mod packets;
 mod placed;

@@ -4,15 +4,13 @@
 //! everything else by one ray after the other. Of hits at the same distance the lowest primitive's wins, in whatever order they
 //! are found, so the way through the tree may be anybody's.
 
-use std::ops::ControlFlow;
-
 use snell_math::lanes::{Bits, Floats, LaneVector, Lanes, WIDTH, Work};
 use snell_math::{Point3, Ray, Vector3};
 
 use super::lanes::{HitRows, key_of};
 use super::space::{NONE, Primitive, Space};
-use super::{Geometry, Hit, InnerHit, LocalHit, LocalPlace, Placement, QueryScratch, TOUCHING, Touching};
-use crate::accel::wide::{Group, PrimitiveFinder, PrimitiveSeeker, widened_measure};
+use super::{Geometry, InnerHit, LocalHit, LocalPlace, Placement, QueryScratch, TOUCHING, Touching};
+use crate::accel::wide::{Group, PrimitiveSeeker, widened_measure};
 use crate::shape::triangle_mesh::RayRow;
 use crate::shape::{LaneRay, LaneSpheres};
 use crate::task::column;
@@ -45,13 +43,13 @@ impl RayGroup {
 
     /// The same, taken to a local space.
     #[inline(always)]
-    fn to_local<L: Lanes>(&self, placement: &Placement) -> Self {
+    pub(super) fn to_local<L: Lanes>(&self, placement: &Placement) -> Self {
         L::stage(ToLocal { group: self, placement })
     }
 
     /// The same, in the space of a primitive, in a place for it where that is another one.
     #[inline(always)]
-    fn in_space_of<'g, L: Lanes>(
+    pub(super) fn in_space_of<'g, L: Lanes>(
         &'g self,
         space: &Space,
         primitive: &Primitive,
@@ -65,18 +63,18 @@ impl RayGroup {
 
     /// One of them.
     #[inline(always)]
-    fn ray(&self, lane: usize) -> Ray {
+    pub(super) fn ray(&self, lane: usize) -> Ray {
         let lane = lane & (WIDTH - 1);
         Ray::new(Point3::from(column(&self.origin, lane)), Vector3::from(column(&self.direction, lane)))
     }
 
     #[inline(always)]
-    fn row(&self) -> RayRow<'_> {
+    pub(super) fn row(&self) -> RayRow<'_> {
         RayRow { origin: &self.origin, direction: &self.direction }
     }
 
     #[inline(always)]
-    fn lanes<L: Lanes>(&self) -> LaneRay<L> {
+    pub(super) fn lanes<L: Lanes>(&self) -> LaneRay<L> {
         LaneRay { origin: LaneVector::load(&self.origin, 0), direction: LaneVector::load(&self.direction, 0) }
     }
 }
@@ -306,184 +304,6 @@ impl Geometry {
         }
         if let Primitive::Mesh { mesh, .. } = primitive {
             self.meshes[*mesh as usize].prefetch_corners::<L::Eight>(hits.place[lane].part);
-        }
-    }
-}
-
-/// The instance of the world through which a prototype is seen: its number, and the material that it hands on.
-pub(super) type Outer = Option<(u32, u32)>;
-
-/// What all questions of one row of shadow rays have in common.
-pub(super) struct Shadows<'a> {
-    pub(super) distance: &'a [f64; WIDTH],
-    pub(super) any_blocks: bool,
-    /// Meetings with transparent surfaces, each with its lane.
-    pub(super) hits: &'a mut Vec<(u8, Hit)>,
-    pub(super) scratch: &'a mut QueryScratch,
-}
-
-/// The question which rays are blocked by the primitives of a space's hierarchy.
-pub(super) struct BlockedInSpace<'a, 's> {
-    pub(super) geometry: &'a Geometry,
-    pub(super) space: &'a Space,
-    pub(super) outer: Outer,
-    pub(super) group: &'a RayGroup,
-    pub(super) active: Bits,
-    pub(super) shadows: &'a mut Shadows<'s>,
-}
-
-struct BlockedFinder<'a, 'r, 's, L> {
-    geometry: &'a Geometry,
-    space: &'a Space,
-    outer: Outer,
-    group: &'r RayGroup,
-    ray: LaneRay<L>,
-    distance: L,
-    blocked: Bits,
-    shadows: &'r mut Shadows<'s>,
-}
-
-impl Work for BlockedInSpace<'_, '_> {
-    type Output = Bits;
-    #[inline(always)]
-    fn run<L: Lanes>(self) -> Bits {
-        let Self { geometry, space, outer, group, active, shadows } = self;
-        let ray = group.lanes::<L>();
-        let distance = L::load(shadows.distance, 0);
-        let probes = space.bvh.tree().approach_together(ray.origin, ray.direction, active, distance);
-        let ready = &Group::new(&probes, distance);
-        let mut finder =
-            BlockedFinder::<L> { geometry, space, outer, group, ray, distance, blocked: Bits::NONE, shadows };
-        space.bvh.each_together(&probes, ready, &mut finder);
-        let mut blocked = finder.blocked;
-        for lane in probes.strange.lanes() {
-            let (ray, distance) = (&group.ray(lane), shadows.distance[lane]);
-            let is_blocked = space
-                .bvh
-                .any(ray, distance, |index| geometry.is_blocked_alone(space, outer, index, ray, lane, shadows));
-            if is_blocked {
-                blocked |= Bits::lane(lane);
-            }
-        }
-        blocked
-    }
-}
-
-impl<L: Lanes> PrimitiveFinder for BlockedFinder<'_, '_, '_, L> {
-    #[inline(always)]
-    fn primitive(&mut self, index: u32, rays: Bits) -> Bits {
-        let blocks_all = self.shadows.any_blocks || self.space.attributes[index as usize].is_opaque;
-        let blocked = match &self.space.primitives[index as usize] {
-            Primitive::Sphere(sphere) if blocks_all => {
-                if rays.count() > 1 {
-                    LaneSpheres::from(sphere).intersect_likely(&self.ray, self.distance).0 & rays
-                } else {
-                    let lane = rays.lowest() & (WIDTH - 1);
-                    let (ray, distance) = (&self.group.ray(lane), self.shadows.distance[lane]);
-                    if sphere.intersect_likely(ray, 0.0, distance).is_some() { rays } else { Bits::NONE }
-                }
-            }
-            _ => self.geometry.block_together::<L>(self.space, self.outer, index, self.group, rays, self.shadows),
-        };
-        self.blocked |= blocked;
-        blocked
-    }
-}
-
-impl Geometry {
-    /// Which rays are blocked by one primitive of a space, which may be any; what they meet of transparent ones is gathered.
-    #[inline(never)]
-    pub(super) fn block_together<L: Lanes>(
-        &self,
-        space: &Space,
-        outer: Outer,
-        index: u32,
-        group: &RayGroup,
-        rays: Bits,
-        shadows: &mut Shadows<'_>,
-    ) -> Bits {
-        let primitive = &space.primitives[index as usize];
-        match primitive {
-            Primitive::Instance { prototype, placement, material }
-                if self.prototypes[*prototype as usize].handful.is_empty() =>
-            {
-                let inner = &self.prototypes[*prototype as usize];
-                let local = group.to_local::<L>(&space.placements[*placement as usize]);
-                let outer = Some((index, *material));
-                let mut blocked = Bits::NONE;
-                for alone in inner.first_alone..inner.primitives.len() {
-                    let open = rays.without(blocked);
-                    if open.any() {
-                        blocked |= self.block_together::<L>(inner, outer, alone as u32, &local, open, shadows);
-                    }
-                }
-                let active = rays.without(blocked);
-                if inner.first_alone > 0 && active.any() {
-                    blocked |= L::stage(BlockedInSpace {
-                        geometry: self,
-                        space: inner,
-                        outer,
-                        group: &local,
-                        active,
-                        shadows,
-                    });
-                }
-                blocked
-            }
-            Primitive::Mesh { mesh, .. } if shadows.any_blocks || space.attributes[index as usize].is_opaque => {
-                let mut carried = None;
-                let group = group.in_space_of::<L>(space, primitive, &mut carried);
-                self.meshes[*mesh as usize].any_together::<L>(group.row(), rays, shadows.distance)
-            }
-            Primitive::Mesh { mesh, .. } => {
-                let mut carried = None;
-                let group = group.in_space_of::<L>(space, primitive, &mut carried);
-                let attributes = &space.attributes[index as usize];
-                let (number, inner, inherited) = match outer {
-                    None => (index, NONE, NONE),
-                    Some((instance, material)) => (instance, index, material),
-                };
-                let hits = &mut *shadows.hits;
-                self.meshes[*mesh as usize].each_together::<L>(group.row(), rays, shadows.distance, |lane, hit| {
-                    let LocalHit { t, place } = LocalHit::from(hit);
-                    let material = self.material_of(primitive, attributes, inherited, place);
-                    if !self.transparent[material as usize] {
-                        return ControlFlow::Break(());
-                    }
-                    hits.push((lane as u8, Hit { t, primitive: number, inner, place }));
-                    ControlFlow::Continue(())
-                })
-            }
-            _ => {
-                let mut blocked = Bits::NONE;
-                for lane in rays.lanes() {
-                    if self.is_blocked_alone(space, outer, index, &group.ray(lane), lane, shadows) {
-                        blocked |= Bits::lane(lane);
-                    }
-                }
-                blocked
-            }
-        }
-    }
-
-    /// Whether one ray is blocked by one primitive of a space.
-    fn is_blocked_alone(
-        &self,
-        space: &Space,
-        outer: Outer,
-        index: u32,
-        ray: &Ray,
-        lane: usize,
-        shadows: &mut Shadows<'_>,
-    ) -> bool {
-        let Shadows { distance, any_blocks, hits, scratch } = shadows;
-        let (primitive, distance) = (&space.primitives[index as usize], distance[lane]);
-        let keep = |hit| hits.push((lane as u8, hit));
-        match outer {
-            None => self.is_blocked_by(index, primitive, ray, distance, *any_blocks, keep, scratch),
-            Some(outer) => {
-                self.is_blocked_inside(space, outer, index, primitive, ray, distance, *any_blocks, keep, scratch)
-            }
         }
     }
 }
