@@ -37,13 +37,7 @@ impl PixelSum {
     /// without a sum.
     #[inline]
     pub fn mean_of_one(sample: Rgb) -> (Rgb, bool) {
-        if !sample.is_finite() {
-            return (Rgb::BLACK, false);
-        }
-        (
-            sample.map(|component| (rounded(f64::from(component).clamp(-BRIGHTEST, BRIGHTEST) / UNIT) * UNIT) as f32),
-            true,
-        )
+        if sample.is_finite() { (sample.map(mean_of_component), true) } else { (Rgb::BLACK, false) }
     }
 
     /// What a pixel of one sample holds, from its [`PixelSum::mean`]: nothing is lost on the way, since a sum that is finer than an
@@ -73,6 +67,29 @@ impl PixelSum {
         let [r, g, b] = self.sum.map(|sum| (sum as f64 * UNIT / f64::from(self.count)) as f32);
         Rgb::new(r, g, b)
     }
+}
+
+/// Appends the [`PixelSum::mean_of_one`] of samples; false where one is not finite.
+pub fn means_of_ones(samples: &[Rgb], means: &mut Vec<Rgb>) -> bool {
+    let before = means.len();
+    means.extend(samples.iter().map(|sample| sample.map(mean_of_component)));
+    if samples.iter().fold(true, |finite, sample| finite & sample.is_finite()) {
+        return true;
+    }
+    for (mean, sample) in means[before..].iter_mut().zip(samples).filter(|(_, sample)| !sample.is_finite()) {
+        *mean = PixelSum::mean_of_one(*sample).0;
+    }
+    false
+}
+
+/// A component of a sample as its sum has it.
+#[inline]
+fn mean_of_component(component: f32) -> f32 {
+    // Not `clamp`, which takes care of NaN.
+    let value = f64::from(component);
+    let value = if value < BRIGHTEST { value } else { BRIGHTEST };
+    let value = if value > -BRIGHTEST { value } else { -BRIGHTEST };
+    (rounded(value / UNIT) * UNIT) as f32
 }
 
 /// The nearest whole number, of two the even one, for magnitudes up to 2⁵⁰.
@@ -129,6 +146,9 @@ mod tests {
             prop_assert_eq!(PixelSum::of_one(pixel.mean()), pixel);
             let (mean, is_finite_too) = PixelSum::mean_of_one(Rgb::from(sample));
             prop_assert_eq!((mean, is_finite_too), (pixel.mean(), is_finite));
+            let mut means = vec![Rgb::WHITE];
+            prop_assert_eq!(means_of_ones(&[Rgb::BLACK, Rgb::from(sample)], &mut means), is_finite);
+            prop_assert_eq!(means, [Rgb::WHITE, Rgb::BLACK, pixel.mean()]);
         }
     }
 

@@ -7,7 +7,7 @@ use snell_math::Ray;
 use snell_math::lanes::{Bits, Lanes, WIDTH, Work};
 
 use super::lanes::keep_met;
-use super::packets::RayGroup;
+use super::packets::{Ends, RayGroup};
 use super::space::{NONE, Primitive, Space};
 use super::{Geometry, Hit, LocalHit, LocalPlace, QueryScratch};
 use crate::accel::wide::{Group, PrimitiveFinder};
@@ -23,6 +23,29 @@ pub(super) struct Shadows<'a> {
     /// Meetings with transparent surfaces, each with its lane.
     pub(super) hits: &'a mut Vec<(u8, Hit)>,
     pub(super) scratch: &'a mut QueryScratch,
+}
+
+/// The question which rays are blocked by one primitive of the world, or where there is no number, by those of its hierarchy.
+pub(super) struct BlockedInWorld<'a, 's> {
+    pub(super) geometry: &'a Geometry,
+    pub(super) index: Option<u32>,
+    pub(super) ends: Ends<'a>,
+    pub(super) active: Bits,
+    pub(super) shadows: &'a mut Shadows<'s>,
+}
+
+impl Work for BlockedInWorld<'_, '_> {
+    type Output = Bits;
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Bits {
+        let Self { geometry, index, ends: (origin, direction), active, shadows } = self;
+        let group = &RayGroup::new(&LaneRay::<L>::load(origin, direction, 0));
+        let (space, outer) = (&geometry.world, None);
+        match index {
+            Some(index) => geometry.block_together::<L>(space, outer, index, group, active, shadows),
+            None => BlockedInSpace { geometry, space, outer, group, active, shadows }.run::<L>(),
+        }
+    }
 }
 
 /// The question which rays are blocked by the primitives of a space's hierarchy.

@@ -1,10 +1,11 @@
 //! Hits of rays side by side, worked out: spheres, planes and meshes of the world in lanes, everything else one by one. What comes
 //! of it is what [`Geometry::interaction`] gives for each hit alone.
 
-use snell_math::lanes::{Bits, LaneVector, Lanes, WIDTH};
+use snell_math::lanes::{Bits, LaneVector, Lanes, WIDTH, Work};
 use snell_math::{Point3, Ray, Vector3};
 
 use super::lanes::HitRows;
+use super::packets::Ends;
 use super::space::{Attributes, NONE, Primitive};
 use super::{Geometry, Hit, LocalPlace};
 use crate::interaction::{SolidId, SurfaceInteraction, SurfaceRows};
@@ -17,7 +18,7 @@ impl Geometry {
     #[inline(always)]
     pub(crate) fn surfaces<L: Lanes>(
         &self,
-        (origin, direction): (&[[f64; WIDTH]; 3], &[[f64; WIDTH]; 3]),
+        (origin, direction): Ends,
         at: usize,
         hits: &HitRows,
         met: Bits,
@@ -85,7 +86,7 @@ impl Geometry {
         }
         surfaces.unplaced = Bits(unplaced) & (spheres | planes);
         if meshes.any() {
-            let unusual = self.surfaces_of_meshes::<L>(&ray, hits, meshes, surfaces);
+            let unusual = L::stage(OfMeshes { geometry: self, ends: (origin, direction), hits, meshes, surfaces });
             // What asks for no place on an object may have any.
             surfaces.unplaced |= meshes.without(unusual);
             for lane in unusual.lanes() {
@@ -109,40 +110,6 @@ impl Geometry {
         let material = self.material_of(primitive, &self.world.attributes[index as usize], NONE, place);
         let Spaces { object, uv, .. } = self.spaces[material as usize];
         (!object && !uv && !self.meshes[*mesh as usize].has_colors()).then_some(material)
-    }
-
-    /// Works out hits with meshes of the world; returns the lanes that have to be worked out one by one.
-    #[inline(always)]
-    fn surfaces_of_meshes<L: Lanes>(
-        &self,
-        ray: &LaneRay<L>,
-        hits: &HitRows,
-        meshes: Bits,
-        surfaces: &mut SurfaceRows,
-    ) -> Bits {
-        let triangles = hits.place.map(|place| place.part);
-        let (mut rest, mut unusual) = (meshes, Bits::NONE);
-        while rest.any() {
-            let index = hits.primitive[rest.lowest() & (WIDTH - 1)];
-            let mut same = Bits::NONE;
-            for lane in rest.lanes() {
-                same |= Bits(u8::from(hits.primitive[lane] == index) << lane);
-            }
-            rest = rest.without(same);
-            let primitive = &self.world.primitives[index as usize];
-            let Primitive::Mesh { mesh, .. } = primitive else { continue };
-            let mesh = &self.meshes[*mesh as usize];
-            let (surface, done) = match self.world.placement(primitive) {
-                None => mesh.surfaces(ray, &triangles, same),
-                Some(placement) => {
-                    let (surface, done) = mesh.surfaces(&placement.lanes_to_local(*ray), &triangles, same);
-                    (placement.carry_lanes_out(&surface), done)
-                }
-            };
-            unusual |= same.without(done);
-            surfaces.put(0, done, &surface);
-        }
-        unusual
     }
 
     /// The material of a sphere or plane of the world, and the space of its object.
@@ -184,12 +151,55 @@ impl Geometry {
     }
 }
 
+/// The question for hits with meshes of the world, worked out; the lanes that have to be worked out one by one. By itself, since
+/// scenes without meshes should not carry it around.
+struct OfMeshes<'a> {
+    geometry: &'a Geometry,
+    ends: Ends<'a>,
+    hits: &'a HitRows,
+    meshes: Bits,
+    surfaces: &'a mut SurfaceRows,
+}
+
+impl Work for OfMeshes<'_> {
+    type Output = Bits;
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Bits {
+        let Self { geometry, ends: (origin, direction), hits, meshes, surfaces } = self;
+        let ray = LaneRay::<L>::load(origin, direction, 0);
+        let triangles = hits.place.map(|place| place.part);
+        let (mut rest, mut unusual) = (meshes, Bits::NONE);
+        while rest.any() {
+            let index = hits.primitive[rest.lowest() & (WIDTH - 1)];
+            let mut same = Bits::NONE;
+            for lane in rest.lanes() {
+                same |= Bits(u8::from(hits.primitive[lane] == index) << lane);
+            }
+            rest = rest.without(same);
+            let primitive = &geometry.world.primitives[index as usize];
+            let Primitive::Mesh { mesh, .. } = primitive else { continue };
+            let mesh = &geometry.meshes[*mesh as usize];
+            let (surface, done) = match geometry.world.placement(primitive) {
+                None => mesh.surfaces(&ray, &triangles, same),
+                Some(placement) => {
+                    let (surface, done) = mesh.surfaces(&placement.lanes_to_local(ray), &triangles, same);
+                    (placement.carry_lanes_out(&surface), done)
+                }
+            };
+            unusual |= same.without(done);
+            let LaneSurfacePoint { point, error, geometric_normal, shading_normal } = surface;
+            surfaces.put(0, done, point, geometric_normal, shading_normal, error);
+        }
+        unusual
+    }
+}
+
 impl SurfaceRows {
     /// Puts in where rays meet spheres.
     #[inline(always)]
     fn put_spheres<L: Lanes>(&mut self, at: usize, lanes: Bits, spheres: &LaneSpheres<L>, ray: &LaneRay<L>, t: L) {
         let (point, normal, error) = spheres.surface(ray, t);
-        self.put(at, lanes, &LaneSurfacePoint { point, error, geometric_normal: normal, shading_normal: normal });
+        self.put(at, lanes, point, normal, normal, error);
     }
 
     /// Puts in where rays meet planes.
@@ -197,13 +207,20 @@ impl SurfaceRows {
     fn put_planes<L: Lanes>(&mut self, at: usize, lanes: Bits, planes: &LanePlanes<L>, ray: &LaneRay<L>, t: L) {
         let (point, error) = planes.surface(ray, t);
         let normal = planes.normal;
-        self.put(at, lanes, &LaneSurfacePoint { point, error, geometric_normal: normal, shading_normal: normal });
+        self.put(at, lanes, point, normal, normal, error);
     }
 
     /// Puts in surfaces of some lanes.
     #[inline(always)]
-    fn put<L: Lanes>(&mut self, at: usize, lanes: Bits, surface: &LaneSurfacePoint<L>) {
-        let LaneSurfacePoint { point, error, geometric_normal, shading_normal } = *surface;
+    fn put<L: Lanes>(
+        &mut self,
+        at: usize,
+        lanes: Bits,
+        point: LaneVector<L>,
+        geometric_normal: LaneVector<L>,
+        shading_normal: LaneVector<L>,
+        error: L,
+    ) {
         put_rows(&mut self.point, at, lanes, point);
         error.or_where_not(lanes, L::load(&self.error, at)).store(&mut self.error, at);
         put_rows(&mut self.geometric_normal, at, lanes, geometric_normal);
@@ -219,6 +236,6 @@ fn put_rows<L: Lanes>(rows: &mut [[f64; WIDTH]; 3], at: usize, lanes: Bits, v: L
 
 /// One ray of rows of origins and directions.
 #[inline(always)]
-fn ray_of((origin, direction): (&[[f64; WIDTH]; 3], &[[f64; WIDTH]; 3]), lane: usize) -> Ray {
+fn ray_of((origin, direction): Ends, lane: usize) -> Ray {
     Ray::new(Point3::from(column(origin, lane)), Vector3::from(column(direction, lane)))
 }

@@ -6,8 +6,8 @@
 
 use snell_math::lanes::{Bits, LaneVector, Lanes, WIDTH};
 
-use super::blocked::{BlockedInSpace, Shadows};
-use super::packets::{Found, NearestInSpace, RayGroup};
+use super::blocked::{BlockedInWorld, Shadows};
+use super::packets::{Found, NearestInWorld};
 use super::space::{NONE, Primitive};
 use super::{Geometry, Hit, InnerHit, LocalPlace, QueryScratch, TOUCHING, Touching};
 use crate::accel::Candidate;
@@ -196,13 +196,9 @@ impl Geometry {
         nearest.t.store(&mut hits.t, 0);
         // The number −1 becomes NONE: 32 bits, all set.
         hits.primitive = before.map(|index| index as i64 as u32);
-        let group = &RayGroup::new(&LaneRay::<L>::load(&rays.origin, &rays.direction, 0));
-        let (geometry, space) = (self, &self.world);
         let mut found = Found { key, hits, complex: nearest.complex };
-        match index {
-            Some(index) => self.meet_together::<L>(space, index, group, active, &mut found, scratch),
-            None => L::stage(NearestInSpace { geometry, space, group, active, found: &mut found, scratch }),
-        }
+        let ends = (&rays.origin, &rays.direction);
+        L::stage(NearestInWorld { geometry: self, index, ends, active, found: &mut found, scratch });
         let index = found.hits.primitive.map(|index| if index == NONE { -1.0 } else { f64::from(index) });
         nearest.key = L::load(&found.key, 0);
         nearest.t = L::load(&found.hits.t, 0);
@@ -312,24 +308,19 @@ impl Geometry {
         hits: &mut Vec<(u8, Hit)>,
         scratch: &mut QueryScratch,
     ) -> Bits {
-        let (geometry, space, outer) = (self, &self.world, None);
         if L::COUNT < WIDTH {
             let (ray, distance) = (rows.ray(at), rows.distance[at]);
             return Bits::all_if(match index {
                 None => self.is_blocked_by_bounded(&ray, distance, any_blocks, hits, scratch),
                 Some(index) => {
-                    let primitive = &space.primitives[index as usize];
+                    let primitive = &self.world.primitives[index as usize];
                     let keep = |hit| hits.push((0, hit));
                     self.is_blocked_by(index, primitive, &ray, distance, any_blocks, keep, scratch)
                 }
             }) & L::all();
         }
-        let group = &RayGroup::new(&LaneRay::<L>::load(&rows.origin, &rows.direction, 0));
         let shadows = &mut Shadows { distance: &rows.distance, any_blocks, hits, scratch };
-        match index {
-            Some(index) => self.block_together::<L>(space, outer, index, group, active, shadows),
-            None => L::stage(BlockedInSpace { geometry, space, outer, group, active, shadows }),
-        }
+        L::stage(BlockedInWorld { geometry: self, index, ends: (&rows.origin, &rows.direction), active, shadows })
     }
 
     /// As [`Geometry::is_at_origin`], side by side.

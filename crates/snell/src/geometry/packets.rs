@@ -146,6 +146,33 @@ impl Found<'_> {
     }
 }
 
+/// The origins and the directions of rays side by side.
+pub(super) type Ends<'a> = (&'a [[f64; WIDTH]; 3], &'a [[f64; WIDTH]; 3]);
+
+/// The question for the nearest hits with one primitive of the world, or where there is no number, with those of its hierarchy.
+pub(super) struct NearestInWorld<'a, 'h> {
+    pub(super) geometry: &'a Geometry,
+    pub(super) index: Option<u32>,
+    pub(super) ends: Ends<'a>,
+    pub(super) active: Bits,
+    pub(super) found: &'a mut Found<'h>,
+    pub(super) scratch: &'a mut QueryScratch,
+}
+
+impl Work for NearestInWorld<'_, '_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { geometry, index, ends: (origin, direction), active, found, scratch } = self;
+        let group = &RayGroup::new(&LaneRay::<L>::load(origin, direction, 0));
+        let space = &geometry.world;
+        match index {
+            Some(index) => geometry.meet_together::<L>(space, index, group, active, found, scratch),
+            None => NearestInSpace { geometry, space, group, active, found, scratch }.run::<L>(),
+        }
+    }
+}
+
 /// The question for the nearest hits with the primitives of a space's hierarchy.
 pub(super) struct NearestInSpace<'a, 'h> {
     pub(super) geometry: &'a Geometry,

@@ -29,7 +29,7 @@ pub use watch::{Watch, explain, explain_path};
 use crate::camera::Camera;
 use crate::compile::CompiledScene;
 use crate::differential::RayDifferential;
-use crate::film::PixelSum;
+use crate::film::{self, PixelSum};
 use crate::geometry::Hit;
 use crate::integrator::{Integrator, Rules};
 use crate::observe::NoObserver;
@@ -196,7 +196,7 @@ impl CameraRays for TileRays<'_> {
     fn generate<L: Lanes>(&self, first: usize, rows: &mut RayRows, split: &mut [u32; WIDTH], at: usize) {
         let (mut xs, mut ys) = ([0.0; WIDTH], [0.0; WIDTH]);
         let per_pixel = self.samples.places.len();
-        let (mut pixel, mut sample) = (first / per_pixel, first % per_pixel);
+        let (mut pixel, mut sample) = if per_pixel == 1 { (first, 0) } else { (first / per_pixel, first % per_pixel) };
         for lane in 0..L::COUNT {
             // Beyond the last one it is the last one again.
             let Pixel { x, y } = self.pixels[pixel.min(self.pixels.len() - 1)];
@@ -235,7 +235,7 @@ struct Gathered {
     statistics: Statistics,
 }
 
-/// The buffers of one worker.
+/// The buffers of one worker. To be kept in a box where it is handed from one piece of work to the next, since it is large.
 #[derive(Default)]
 struct Worker {
     scratch: Scratch,
@@ -258,7 +258,7 @@ impl<I: Integrator<State = ()>> Job<'_, I> {
         let samples = Samples::new(passes.next().unwrap_or(0..1));
         progress.pass(0, u64::from(width) * u64::from(height));
         // One after the other, whichever thread is free: some tiles take much longer than others.
-        tiles.iter().par_bridge().for_each_init(Worker::default, |worker, tile| {
+        tiles.iter().par_bridge().for_each_init(Box::<Worker>::default, |worker, tile| {
             if !progress.is_cancelled() {
                 self.render_tile(tile, &samples, worker, &gathered, progress);
             }
@@ -283,8 +283,7 @@ impl<I: Integrator<State = ()>> Job<'_, I> {
     ) {
         let per_pixel = samples.places.len();
         let Worker { scratch, pixels, means, first_hits, .. } = worker;
-        pixels.clear();
-        pixels.extend(tile.pixels());
+        tile.list(pixels);
         means.clear();
         first_hits.clear();
         let mut statistics = Statistics::default();
@@ -304,14 +303,14 @@ impl<I: Integrator<State = ()>> Job<'_, I> {
             let watch: Option<&mut FirstHitWatch<'_>> = if is_watched { Some(&mut watch) } else { None };
             let colors = self.tracer().trace(&rays, scratch, &mut statistics, &mut NoObserver, watch);
             let place = |pixel: Pixel, sample: usize| pixel.sample(samples.first + sample as u32);
-            means.extend(colors.chunks_exact(per_pixel).zip(pixels).map(|(colors, &pixel)| {
-                if let [color] = colors {
-                    let (mean, is_finite) = PixelSum::mean_of_one(*color);
-                    if !is_finite {
-                        statistics.add_nonfinite(place(pixel, 0));
-                    }
-                    return mean;
+            if per_pixel == 1 {
+                if !film::means_of_ones(colors, means) {
+                    let broken = colors.iter().zip(pixels).filter(|(color, _)| !color.is_finite());
+                    broken.for_each(|(_, &pixel)| statistics.add_nonfinite(place(pixel, 0)));
                 }
+                continue;
+            }
+            means.extend(colors.chunks_exact(per_pixel).zip(pixels).map(|(colors, &pixel)| {
                 let mut sum = PixelSum::default();
                 for (sample, &color) in colors.iter().enumerate() {
                     if !sum.add(color) {
@@ -385,6 +384,14 @@ impl Tile {
     fn pixels(&self) -> impl Iterator<Item = Pixel> {
         let columns = self.columns.clone();
         self.rows.clone().flat_map(move |y| columns.clone().map(move |x| Pixel { x, y }))
+    }
+
+    /// The same, in place of what is in the list.
+    fn list(&self, pixels: &mut Vec<Pixel>) {
+        pixels.clear();
+        for y in self.rows.clone() {
+            pixels.extend(self.columns.clone().map(|x| Pixel { x, y }));
+        }
     }
 
     /// Puts its colours, or as many of the first as there are, into the picture.

@@ -212,7 +212,7 @@ fn run_paths(
         let counted = estimates
             .chunks_mut(MAX_QUEUE)
             .par_bridge()
-            .map_init(Worker::default, |worker, portion| {
+            .map_init(Box::<Worker>::default, |worker, portion| {
                 job.trace_portion(portion, paths, sample, worker, &first_hits, progress)
             })
             .reduce(Statistics::default, |mut sum, part| {

@@ -14,6 +14,9 @@ use crate::observe::NoObserver;
 use crate::statistics::Statistics;
 use crate::trace::{FirstHitWatch, Scratch};
 
+/// How many pixels are settled together: enough for few queues that are partly full, few enough that none is waited for long.
+const PORTION: usize = 512;
+
 /// Samples of the second pass, and what is shown wrong after them.
 struct Step {
     samples: Samples,
@@ -47,9 +50,7 @@ impl<I: Integrator<State = ()>> Job<'_, I> {
         let steps: Vec<Step> = passes
             .map(|samples| Step { display: Display::new(self.settings, samples.end), samples: Samples::new(samples) })
             .collect();
-        let first = steps.first().map_or(1, |step| step.samples.places.len());
-        let portions = pixels.chunks((MAX_QUEUE / first).max(1));
-        portions.par_bridge().for_each_init(Worker::default, |worker, portion| {
+        pixels.chunks(PORTION).par_bridge().for_each_init(Box::<Worker>::default, |worker, portion| {
             if !progress.is_cancelled() {
                 self.refine_portion(portion, &steps, worker, gathered, progress);
             }
