@@ -76,11 +76,14 @@ pub fn decode_display(bytes: &[u8], limits: &Limits) -> Result<DisplayImage, Dec
 
 /// Red, green and blue of pixels with one to four channels.
 fn colors_of<S: Copy>(samples: &[S], channels: usize) -> Vec<S> {
-    match channels {
-        3 => samples.to_vec(),
-        4 => samples.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect(),
-        _ => samples.chunks_exact(channels).flat_map(|pixel| [pixel[0]; 3]).collect(),
+    if channels == 3 {
+        return samples.to_vec();
     }
+    let (pixels, has_colors) = (samples.chunks_exact(channels), channels == 4);
+    let colors: Vec<[S; 3]> =
+        pixels.map(|pixel| if has_colors { [pixel[0], pixel[1], pixel[2]] } else { [pixel[0]; 3] }).collect();
+    // Not a flat map, which the compiler goes through sample by sample.
+    colors.into_flattened()
 }
 
 /// Which format the first bytes announce.
