@@ -7,11 +7,11 @@ use snell_math::Ray;
 use snell_math::lanes::{Bits, Lanes, WIDTH, Work};
 
 use super::lanes::keep_met;
-use super::packets::{Ends, RayGroup};
+use super::packets::RayGroup;
 use super::space::{NONE, Primitive, Space};
 use super::{Geometry, Hit, LocalHit, LocalPlace, QueryScratch};
 use crate::accel::wide::{Group, PrimitiveFinder};
-use crate::shape::{LaneRay, LaneSpheres, Sphere};
+use crate::shape::{LaneRay, LaneSpheres, RayRow, Sphere};
 
 /// The instance of the world through which a prototype is seen: its number, and the material that it hands on.
 pub(super) type Outer = Option<(u32, u32)>;
@@ -29,7 +29,7 @@ pub(super) struct Shadows<'a> {
 pub(super) struct BlockedInWorld<'a, 's> {
     pub(super) geometry: &'a Geometry,
     pub(super) index: Option<u32>,
-    pub(super) ends: Ends<'a>,
+    pub(super) rays: RayRow<'a>,
     pub(super) active: Bits,
     pub(super) shadows: &'a mut Shadows<'s>,
 }
@@ -38,8 +38,8 @@ impl Work for BlockedInWorld<'_, '_> {
     type Output = Bits;
     #[inline(always)]
     fn run<L: Lanes>(self) -> Bits {
-        let Self { geometry, index, ends: (origin, direction), active, shadows } = self;
-        let group = &RayGroup::new(&LaneRay::<L>::load(origin, direction, 0));
+        let Self { geometry, index, rays, active, shadows } = self;
+        let group = &RayGroup::new(&rays.lanes::<L>(0));
         let (space, outer) = (&geometry.world, None);
         match index {
             Some(index) => geometry.block_together::<L>(space, outer, index, group, active, shadows),

@@ -5,26 +5,25 @@ use snell_math::lanes::{Bits, LaneVector, Lanes, WIDTH, Work};
 use snell_math::{Point3, Ray, Vector3};
 
 use super::lanes::HitRows;
-use super::packets::Ends;
 use super::space::{Attributes, NONE, Primitive};
 use super::{Geometry, Hit, LocalPlace};
 use crate::interaction::{SolidId, SurfaceInteraction, SurfaceRows};
-use crate::shape::{LanePlanes, LaneRay, LaneSpheres, LaneSurfacePoint, SurfacePoint};
+use crate::shape::{LanePlanes, LaneRay, LaneSpheres, LaneSurfacePoint, RayRow, SurfacePoint};
 use crate::task::{column, set_column};
 use crate::texture::Spaces;
 
 impl Geometry {
-    /// Works out hits of rays side by side, from place `at` of the rows on, of the rays' origins and directions.
+    /// Works out hits of rays side by side, from place `at` of the rows on.
     #[inline(always)]
     pub(crate) fn surfaces<L: Lanes>(
         &self,
-        (origin, direction): Ends,
+        rays: RayRow,
         at: usize,
         hits: &HitRows,
         met: Bits,
         surfaces: &mut SurfaceRows,
     ) {
-        let ray = LaneRay::<L>::load(origin, direction, at);
+        let ray = rays.lanes::<L>(at);
         let t = L::load(&hits.t, at);
         // Neighbouring rays most often meet the same thing.
         let first = hits.primitive[at + met.lowest()];
@@ -80,17 +79,17 @@ impl Geometry {
                         surfaces.material[lane] = material;
                         continue;
                     }
-                    self.surface_one_by_one(&ray_of((origin, direction), at + lane), hits, at + lane, surfaces);
+                    self.surface_one_by_one(&rays.ray(at + lane), hits, at + lane, surfaces);
                 }
             }
         }
         surfaces.unplaced = Bits(unplaced) & (spheres | planes);
         if meshes.any() {
-            let unusual = L::stage(OfMeshes { geometry: self, ends: (origin, direction), hits, meshes, surfaces });
+            let unusual = L::stage(OfMeshes { geometry: self, rays, hits, meshes, surfaces });
             // What asks for no place on an object may have any.
             surfaces.unplaced |= meshes.without(unusual);
             for lane in unusual.lanes() {
-                self.surface_one_by_one(&ray_of((origin, direction), lane), hits, lane, surfaces);
+                self.surface_one_by_one(&rays.ray(lane), hits, lane, surfaces);
             }
         }
         if spheres.any() {
@@ -155,7 +154,7 @@ impl Geometry {
 /// scenes without meshes should not carry it around.
 struct OfMeshes<'a> {
     geometry: &'a Geometry,
-    ends: Ends<'a>,
+    rays: RayRow<'a>,
     hits: &'a HitRows,
     meshes: Bits,
     surfaces: &'a mut SurfaceRows,
@@ -165,8 +164,8 @@ impl Work for OfMeshes<'_> {
     type Output = Bits;
     #[inline(always)]
     fn run<L: Lanes>(self) -> Bits {
-        let Self { geometry, ends: (origin, direction), hits, meshes, surfaces } = self;
-        let ray = LaneRay::<L>::load(origin, direction, 0);
+        let Self { geometry, rays, hits, meshes, surfaces } = self;
+        let ray = rays.lanes::<L>(0);
         let triangles = hits.place.map(|place| place.part);
         let (mut rest, mut unusual) = (meshes, Bits::NONE);
         while rest.any() {
@@ -232,10 +231,4 @@ impl SurfaceRows {
 #[inline(always)]
 fn put_rows<L: Lanes>(rows: &mut [[f64; WIDTH]; 3], at: usize, lanes: Bits, v: LaneVector<L>) {
     v.or_where_not(lanes, LaneVector::load(rows, at)).store(rows, at);
-}
-
-/// One ray of rows of origins and directions.
-#[inline(always)]
-fn ray_of((origin, direction): Ends, lane: usize) -> Ray {
-    Ray::new(Point3::from(column(origin, lane)), Vector3::from(column(direction, lane)))
 }

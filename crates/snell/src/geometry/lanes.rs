@@ -11,7 +11,7 @@ use super::packets::{Found, NearestInWorld};
 use super::space::{NONE, Primitive};
 use super::{Geometry, Hit, InnerHit, LocalPlace, QueryScratch, TOUCHING, Touching};
 use crate::accel::Candidate;
-use crate::shape::{LanePlanes, LaneRay, LaneSpheres};
+use crate::shape::{LanePlanes, LaneSpheres, RayRow};
 use crate::task::{QuestionRows, RayRows};
 
 /// The nearest hits of eight rays.
@@ -124,7 +124,7 @@ impl Geometry {
         hits: &mut HitRows,
         scratch: &mut QueryScratch,
     ) {
-        let ray = LaneRay::<L>::load(&rays.origin, &rays.direction, at);
+        let ray = RayRow { origin: &rays.origin, direction: &rays.direction }.lanes::<L>(at);
         let along = L::splat(TOUCHING) * ray.origin.max_abs();
         let infinity = L::splat(f64::INFINITY);
         let mut nearest = Nearest { key: infinity, t: infinity, index: L::splat(-1.0), complex: Bits::NONE };
@@ -197,8 +197,8 @@ impl Geometry {
         // The number −1 becomes NONE: 32 bits, all set.
         hits.primitive = before.map(|index| index as i64 as u32);
         let mut found = Found { key, hits, complex: nearest.complex };
-        let ends = (&rays.origin, &rays.direction);
-        L::stage(NearestInWorld { geometry: self, index, ends, active, found: &mut found, scratch });
+        let rays = RayRow { origin: &rays.origin, direction: &rays.direction };
+        L::stage(NearestInWorld { geometry: self, index, rays, active, found: &mut found, scratch });
         let index = found.hits.primitive.map(|index| if index == NONE { -1.0 } else { f64::from(index) });
         nearest.key = L::load(&found.key, 0);
         nearest.t = L::load(&found.hits.t, 0);
@@ -249,7 +249,8 @@ impl Geometry {
         blockers: &mut Blockers,
         scratch: &mut QueryScratch,
     ) {
-        let ray = &LaneRay::<L>::load(&rows.origin, &rows.direction, at);
+        let row = RayRow { origin: &rows.origin, direction: &rows.direction };
+        let ray = &row.lanes::<L>(at);
         let distance = L::load(&rows.distance, at);
         blockers.blocked = Bits::NONE;
         blockers.hits.clear();
@@ -320,7 +321,8 @@ impl Geometry {
             }) & L::all();
         }
         let shadows = &mut Shadows { distance: &rows.distance, any_blocks, hits, scratch };
-        L::stage(BlockedInWorld { geometry: self, index, ends: (&rows.origin, &rows.direction), active, shadows })
+        let rays = RayRow { origin: &rows.origin, direction: &rows.direction };
+        L::stage(BlockedInWorld { geometry: self, index, rays, active, shadows })
     }
 
     /// As [`Geometry::is_at_origin`], side by side.

@@ -19,6 +19,7 @@ mod tests;
 
 use snell_math::{Point3, Ray, Rgb, Vector3};
 
+pub(crate) use crate::shape::RayRow;
 pub use emitting::EmittingSurface;
 pub(crate) use lanes::Blockers;
 pub use lanes::HitRows;

@@ -4,16 +4,14 @@
 //! everything else by one ray after the other. Of hits at the same distance the lowest primitive's wins, in whatever order they
 //! are found, so the way through the tree may be anybody's.
 
-use snell_math::lanes::{Bits, Floats, LaneVector, Lanes, WIDTH, Work};
-use snell_math::{Point3, Ray, Vector3};
+use snell_math::Ray;
+use snell_math::lanes::{Bits, Floats, Lanes, WIDTH, Work};
 
 use super::lanes::{HitRows, key_of};
 use super::space::{NONE, Primitive, Space};
 use super::{Geometry, InnerHit, LocalHit, LocalPlace, Placement, QueryScratch, TOUCHING, Touching};
 use crate::accel::wide::{Group, PrimitiveSeeker, widened_measure};
-use crate::shape::triangle_mesh::RayRow;
-use crate::shape::{LaneRay, LaneSpheres};
-use crate::task::column;
+use crate::shape::{LaneRay, LaneSpheres, RayRow};
 
 /// Rays side by side, in the space of what they are asked about.
 pub(super) struct RayGroup {
@@ -64,8 +62,7 @@ impl RayGroup {
     /// One of them.
     #[inline(always)]
     pub(super) fn ray(&self, lane: usize) -> Ray {
-        let lane = lane & (WIDTH - 1);
-        Ray::new(Point3::from(column(&self.origin, lane)), Vector3::from(column(&self.direction, lane)))
+        self.row().ray(lane)
     }
 
     #[inline(always)]
@@ -75,7 +72,7 @@ impl RayGroup {
 
     #[inline(always)]
     pub(super) fn lanes<L: Lanes>(&self) -> LaneRay<L> {
-        LaneRay { origin: LaneVector::load(&self.origin, 0), direction: LaneVector::load(&self.direction, 0) }
+        self.row().lanes(0)
     }
 }
 
@@ -146,14 +143,11 @@ impl Found<'_> {
     }
 }
 
-/// The origins and the directions of rays side by side.
-pub(super) type Ends<'a> = (&'a [[f64; WIDTH]; 3], &'a [[f64; WIDTH]; 3]);
-
 /// The question for the nearest hits with one primitive of the world, or where there is no number, with those of its hierarchy.
 pub(super) struct NearestInWorld<'a, 'h> {
     pub(super) geometry: &'a Geometry,
     pub(super) index: Option<u32>,
-    pub(super) ends: Ends<'a>,
+    pub(super) rays: RayRow<'a>,
     pub(super) active: Bits,
     pub(super) found: &'a mut Found<'h>,
     pub(super) scratch: &'a mut QueryScratch,
@@ -163,8 +157,8 @@ impl Work for NearestInWorld<'_, '_> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self { geometry, index, ends: (origin, direction), active, found, scratch } = self;
-        let group = &RayGroup::new(&LaneRay::<L>::load(origin, direction, 0));
+        let Self { geometry, index, rays, active, found, scratch } = self;
+        let group = &RayGroup::new(&rays.lanes::<L>(0));
         let space = &geometry.world;
         match index {
             Some(index) => geometry.meet_together::<L>(space, index, group, active, found, scratch),

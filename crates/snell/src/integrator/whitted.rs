@@ -16,7 +16,7 @@ use super::{
 };
 use crate::camera::{Camera, Projection};
 use crate::compile::CompiledScene;
-use crate::geometry::{Geometry, HitRows};
+use crate::geometry::{Geometry, HitRows, RayRow};
 use crate::interaction::{LaneSurface, SurfaceRows};
 use crate::light::Light;
 use crate::material::{LaneBsdf, Material};
@@ -123,8 +123,8 @@ impl Integrator for Whitted {
         if met.is_empty() {
             return;
         }
-        let ends = (&rays.rows.origin, &rays.rows.direction);
-        scene.geometry.surfaces::<L>(ends, at, hits, met, surfaces);
+        let row = RayRow { origin: &rays.rows.origin, direction: &rays.rows.direction };
+        scene.geometry.surfaces::<L>(row, at, hits, met, surfaces);
         look_around(scene, rays.rows, at, met, hits, surfaces, out);
         if out.is_watched() {
             for lane in met.lanes() {

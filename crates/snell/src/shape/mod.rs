@@ -26,7 +26,7 @@ mod torus;
 pub mod triangle_mesh;
 
 use snell_math::lanes::{LaneVector, Lanes, WIDTH};
-use snell_math::{Bounds3, Normal3, Point3, Ray, Transform};
+use snell_math::{Bounds3, Normal3, Point3, Ray, Transform, Vector3};
 
 pub use cuboid::Cuboid;
 pub use disk::Disk;
@@ -58,11 +58,26 @@ pub(crate) struct LaneRay<L> {
     pub(crate) direction: LaneVector<L>,
 }
 
-impl<L: Lanes> LaneRay<L> {
-    /// From rows, see [`Lanes::load`].
+/// Rays side by side, in rows that stand elsewhere.
+#[derive(Clone, Copy)]
+pub(crate) struct RayRow<'a> {
+    pub(crate) origin: &'a [[f64; WIDTH]; 3],
+    pub(crate) direction: &'a [[f64; WIDTH]; 3],
+}
+
+impl RayRow<'_> {
+    /// From place `at` on, see [`Lanes::load`].
     #[inline(always)]
-    pub(crate) fn load(origin: &[[f64; WIDTH]; 3], direction: &[[f64; WIDTH]; 3], at: usize) -> Self {
-        Self { origin: LaneVector::load(origin, at), direction: LaneVector::load(direction, at) }
+    pub(crate) fn lanes<L: Lanes>(&self, at: usize) -> LaneRay<L> {
+        LaneRay { origin: LaneVector::load(self.origin, at), direction: LaneVector::load(self.direction, at) }
+    }
+
+    /// One of them.
+    #[inline(always)]
+    pub(crate) fn ray(&self, lane: usize) -> Ray {
+        let lane = lane & (WIDTH - 1);
+        let [origin, direction] = [self.origin, self.direction].map(|rows| rows.map(|row| row[lane]));
+        Ray::new(Point3::from(origin), Vector3::from(direction))
     }
 }
 

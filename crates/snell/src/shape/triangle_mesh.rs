@@ -31,7 +31,6 @@ use super::SurfacePoint;
 use crate::accel::wide::{WideTree, roomy};
 use crate::accel::{BuildError, BuildOptions, BuildQuality, Bvh};
 use blocks::TriangleBlock;
-pub(crate) use together::RayRow;
 pub use topology::{EdgeFaces, MeshEdge};
 use watertight::{Meeting, RaySpace};
 

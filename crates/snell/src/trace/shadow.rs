@@ -10,7 +10,7 @@ use snell_math::lanes::{Bits, LaneColor, LaneVector, Lanes, WIDTH};
 use snell_scene::scene::{Medium, Shadows};
 
 use crate::compile::CompiledScene;
-use crate::geometry::{Blockers, Geometry, Hit, HitRows, QueryScratch};
+use crate::geometry::{Blockers, Geometry, Hit, HitRows, QueryScratch, RayRow};
 use crate::interaction::{LaneSurface, SurfaceRows, Surroundings};
 use crate::observe::{Observer, ShadowStep};
 use crate::optics::{self, fresnel_dielectric_lanes};
@@ -157,7 +157,8 @@ impl Context<'_> {
             if meeting == 0 {
                 break;
             }
-            self.scene.geometry.surfaces::<L>((&rows.origin, &rows.direction), at, met, Bits(meeting), surfaces);
+            let row = RayRow { origin: &rows.origin, direction: &rows.direction };
+            self.scene.geometry.surfaces::<L>(row, at, met, Bits(meeting), surfaces);
             self.go_through(rows, at, Bits(meeting), met, surfaces, &mut way, observer);
         }
         let before = way.share;

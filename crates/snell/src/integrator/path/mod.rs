@@ -33,7 +33,7 @@ use super::{Integrator, Sink, look_around, seen_at_once, seen_in_directions, vie
 use crate::camera::{Camera, Projection, RealLens, Window};
 use crate::compile::CompiledScene;
 use crate::differential::RayDifferential;
-use crate::geometry::{HitRows, WorldSurface};
+use crate::geometry::{HitRows, RayRow, WorldSurface};
 use crate::interaction::{SurfaceInteraction, SurfaceRows, Surroundings};
 use crate::material::Material;
 use crate::observe::Observer;
@@ -194,7 +194,8 @@ impl Integrator for Path {
     ) {
         let met = Bits(hits.met().0 >> at) & active;
         if met.any() {
-            scene.geometry.surfaces::<L>((&rays.origin, &rays.direction), at, hits, met, surfaces);
+            let row = RayRow { origin: &rays.origin, direction: &rays.direction };
+            scene.geometry.surfaces::<L>(row, at, hits, met, surfaces);
             look_around(scene, rays, at, met, hits, surfaces, out);
         }
         for lane in active.lanes() {

@@ -10,8 +10,9 @@ use snell_math::lanes::{Bits, Eight, Lanes, WIDTH, Work, dispatch};
 use super::blocks::{BlockLine, BlockRay};
 use super::queries::{Question, Search};
 use super::watertight::RaySpace;
-use super::{MeshHit, RayRow, TriangleMesh};
+use super::{MeshHit, TriangleMesh};
 use crate::accel::wide::{Approach, BoxLine, BoxRay, Measure, Path, Probe};
+use crate::shape::RayRow;
 
 /// How many rays are in flight: enough to wait for memory together, few enough for the nearest cache to hold what is known of them.
 const IN_FLIGHT: usize = 16;

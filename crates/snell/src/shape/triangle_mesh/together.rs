@@ -2,31 +2,40 @@
 
 use std::ops::ControlFlow;
 
-use snell_math::lanes::{Bits, Eight, Floats, LaneVector, Lanes, WIDTH, Work};
-use snell_math::{Point3, Ray, Vector3};
+use snell_math::lanes::{Bits, Eight, Floats, Lanes, WIDTH, Work};
 
-use super::blocks::{BlockLines, TriangleBlock};
+use super::blocks::{BlockLines, BlockRay, TriangleBlock};
 use super::queries::{LaneSpace, Question, Search, is_met_in};
 use super::spaces::{Corners, RaySpaces};
 use super::{MeshHit, TriangleMesh};
 use crate::accel::wide::{Finder, Group, Seeker, Visited, number, take_lane};
+use crate::shape::{LaneRay, RayRow};
 
-/// Rays side by side, in the space of the mesh.
+/// Rays side by side, made ready for a mesh: what is known of them stands with whoever asks, since it is too large to be moved.
 #[derive(Clone, Copy)]
-pub(crate) struct RayRow<'a> {
-    pub(crate) origin: &'a [[f64; WIDTH]; 3],
-    pub(crate) direction: &'a [[f64; WIDTH]; 3],
+struct Ready<'a> {
+    mesh: &'a TriangleMesh,
+    group: &'a Group,
+    spaces: &'a RaySpaces,
+    triangles: &'a BlockLines,
 }
 
-impl RayRow<'_> {
+impl<'a> Ready<'a> {
     #[inline(always)]
-    fn lanes<L: Lanes>(&self) -> [LaneVector<L>; 2] {
-        [LaneVector::load(self.origin, 0), LaneVector::load(self.direction, 0)]
+    fn block(&self, leaf: u32) -> &'a TriangleBlock {
+        &self.mesh.blocks[leaf as usize]
     }
 
-    fn ray(&self, lane: usize) -> Ray {
-        let [origin, direction] = [self.origin, self.direction].map(|rows| rows.map(|row| row[lane]));
-        Ray::new(Point3::from(origin), Vector3::from(direction))
+    /// One of the rays, for the filter.
+    #[inline(always)]
+    fn ray<F: Eight>(&self, lane: usize) -> BlockRay<F> {
+        self.triangles.spread(self.spaces.axes, lane)
+    }
+
+    /// Puts in the corners of a triangle that one of the rays is to be tested with.
+    #[inline(always)]
+    fn put(&self, corners: &mut Corners, lane: usize, block: &TriangleBlock, place: usize) {
+        corners.put(lane, &block.corners_on(self.spaces.axes.of(lane), place));
     }
 }
 
@@ -39,33 +48,31 @@ struct Closest<'a> {
     hits: &'a mut [Option<MeshHit>; WIDTH],
 }
 
-struct ClosestAtLeaves<'a, 'r, L: Lanes> {
-    mesh: &'a TriangleMesh,
-    group: &'r Group,
-    spaces: &'r RaySpaces,
-    triangles: &'r BlockLines,
+struct ClosestAtLeaves<'r, L: Lanes> {
+    ready: Ready<'r>,
     searches: &'r mut [Search; WIDTH],
     lanes: std::marker::PhantomData<L>,
 }
 
-impl<L: Lanes> Seeker for ClosestAtLeaves<'_, '_, L> {
+impl<L: Lanes> Seeker for ClosestAtLeaves<'_, L> {
     #[inline(always)]
     fn prefetch(&self, leaf: u32) {
-        L::Eight::prefetch(&self.mesh.blocks[leaf as usize]);
+        L::Eight::prefetch(self.ready.block(leaf));
     }
 
     #[inline(always)]
     fn leaf(&mut self, leaf: u32, rays: Bits, limits: &mut [f32; WIDTH]) {
         for lane in rays.lanes() {
-            let ray = self.triangles.spread::<L::Eight>(self.spaces.axes, lane);
-            let (space, measure) = (LaneSpace(self.spaces, lane), self.group.measure(lane));
-            let question = Question { blocks: &self.mesh.blocks, space, measure };
+            let ray = self.ready.ray::<L::Eight>(lane);
+            let Ready { mesh, group, spaces, .. } = self.ready;
+            let (space, measure) = (LaneSpace(spaces, lane), group.measure(lane));
+            let question = Question { blocks: &mesh.blocks, space, measure };
             self.searches[lane].leaf::<L>(&question, &ray, leaf, &mut limits[lane]);
         }
     }
 }
 
-impl<L: Lanes> ClosestAtLeaves<'_, '_, L> {
+impl<L: Lanes> ClosestAtLeaves<'_, L> {
     /// Decides about what waits, a triangle of each ray at a time.
     #[inline(always)]
     fn settle(&mut self, mut rays: Bits, limits: &[f32; WIDTH]) {
@@ -74,8 +81,8 @@ impl<L: Lanes> ClosestAtLeaves<'_, '_, L> {
             for lane in rays.lanes() {
                 match self.searches[lane].next_waiting(limits[lane]) {
                     Some((block, place)) => {
-                        let block = &self.mesh.blocks[block];
-                        corners.put(lane, &block.corners_on(self.spaces.axes.of(lane), place));
+                        let block = &self.ready.mesh.blocks[block];
+                        self.ready.put(&mut corners, lane, block, place);
                         triangles[lane] = number(block.triangles[place]);
                     }
                     None => rays = rays.without(Bits::lane(lane)),
@@ -84,9 +91,9 @@ impl<L: Lanes> ClosestAtLeaves<'_, '_, L> {
             if rays.is_empty() {
                 return;
             }
-            let meetings = self.spaces.meet::<L>(corners.lanes()).rows();
+            let meetings = self.ready.spaces.meet::<L>(corners.lanes()).rows();
             for lane in rays.lanes() {
-                if let Some(meeting) = meetings.of(lane, self.spaces, &corners) {
+                if let Some(meeting) = meetings.of(lane, self.ready.spaces, &corners) {
                     self.searches[lane].take(triangles[lane], meeting);
                 }
             }
@@ -99,25 +106,24 @@ impl Work for Closest<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let Self { mesh, row, active, t_max, hits } = self;
-        let ([origin, direction], end) = (row.lanes::<L>(), L::load(t_max, 0));
+        let (LaneRay { origin, direction }, end) = (row.lanes::<L>(0), L::load(t_max, 0));
         let probes = mesh.tree.approach_together(origin, direction, active, end);
         for lane in probes.strange.lanes() {
             hits[lane] = mesh.intersect(&row.ray(lane), 0.0, t_max[lane]);
         }
-        let spaces = &RaySpaces::new(origin, direction);
-        let rays = probes.plain & spaces.usable;
-        if rays.is_empty() {
+        if probes.plain.is_empty() {
             return;
         }
-        let group = &Group::new(&probes, end);
+        let (group, spaces) = (&Group::new(&probes, end), &RaySpaces::new(origin, direction));
         let triangles = &BlockLines::new(&probes, spaces.axes);
+        let (ready, rays) = (Ready { mesh, group, spaces, triangles }, probes.plain & spaces.usable);
         let searches = &mut [const { Search::new(0.0, 0.0) }; WIDTH];
         for lane in rays.lanes() {
             searches[lane].restrict(t_max[lane]);
         }
         let mut limits = group.limits;
         let lanes = std::marker::PhantomData;
-        let mut seeker = ClosestAtLeaves::<L> { mesh, group, spaces, triangles, searches, lanes };
+        let mut seeker = ClosestAtLeaves::<L> { ready, searches, lanes };
         group.nearest_in::<L::Eight>(&mesh.tree, rays, &mut limits, &mut seeker);
         seeker.settle(rays, &limits);
         for lane in rays.lanes() {
@@ -135,10 +141,7 @@ struct Any<'a> {
 }
 
 struct AnyAtLeaves<'a, 'r, L: Lanes> {
-    mesh: &'a TriangleMesh,
-    group: &'r Group,
-    spaces: &'r RaySpaces,
-    triangles: &'r BlockLines,
+    ready: Ready<'r>,
     t_max: &'a [f64; WIDTH],
     met: Bits,
     lanes: std::marker::PhantomData<L>,
@@ -147,19 +150,19 @@ struct AnyAtLeaves<'a, 'r, L: Lanes> {
 impl<L: Lanes> Finder for AnyAtLeaves<'_, '_, L> {
     #[inline(always)]
     fn prefetch(&self, leaf: u32) {
-        L::Eight::prefetch(&self.mesh.blocks[leaf as usize]);
+        L::Eight::prefetch(self.ready.block(leaf));
     }
 
     #[inline(always)]
     fn leaf(&mut self, leaf: u32, rays: Bits) -> Bits {
-        let block = &self.mesh.blocks[leaf as usize];
+        let block = self.ready.block(leaf);
         let mut met = Bits::NONE;
         for lane in rays.lanes() {
-            let ray = self.triangles.spread::<L::Eight>(self.spaces.axes, lane);
+            let ray = self.ready.ray::<L::Eight>(lane);
             let t_max = self.t_max[lane];
-            let limit = L::Eight::splat(self.group.limits[lane]);
-            let surely_before = L::Eight::splat(self.group.measure(lane).surely_before(t_max));
-            let space = LaneSpace(self.spaces, lane);
+            let limit = L::Eight::splat(self.ready.group.limits[lane]);
+            let surely_before = L::Eight::splat(self.ready.group.measure(lane).surely_before(t_max));
+            let space = LaneSpace(self.ready.spaces, lane);
             if is_met_in::<L>(block, &ray, space, limit, surely_before, 0.0, t_max) {
                 met |= Bits::lane(lane);
             }
@@ -174,21 +177,20 @@ impl Work for Any<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) -> Bits {
         let Self { mesh, row, active, t_max } = self;
-        let ([origin, direction], end) = (row.lanes::<L>(), L::load(t_max, 0));
+        let (LaneRay { origin, direction }, end) = (row.lanes::<L>(0), L::load(t_max, 0));
         let probes = mesh.tree.approach_together(origin, direction, active, end);
         let mut met = Bits::NONE;
         for lane in probes.strange.lanes() {
             met |= Bits::all_if(mesh.any(&row.ray(lane), 0.0, t_max[lane])) & Bits::lane(lane);
         }
-        let spaces = &RaySpaces::new(origin, direction);
-        let rays = probes.plain & spaces.usable;
-        if rays.is_empty() {
+        if probes.plain.is_empty() {
             return met;
         }
-        let group = &Group::new(&probes, end);
+        let (group, spaces) = (&Group::new(&probes, end), &RaySpaces::new(origin, direction));
         let triangles = &BlockLines::new(&probes, spaces.axes);
+        let (ready, rays) = (Ready { mesh, group, spaces, triangles }, probes.plain & spaces.usable);
         let lanes = std::marker::PhantomData;
-        let mut finder = AnyAtLeaves::<L> { mesh, group, spaces, triangles, t_max, met, lanes };
+        let mut finder = AnyAtLeaves::<L> { ready, t_max, met, lanes };
         group.each_in::<L::Eight>(&mesh.tree, rays, &mut finder);
         finder.met
     }
@@ -204,10 +206,7 @@ struct Each<'a, V> {
 }
 
 struct EachAtLeaves<'a, 'r, L: Lanes, V> {
-    mesh: &'a TriangleMesh,
-    group: &'r Group,
-    spaces: &'r RaySpaces,
-    triangles: &'r BlockLines,
+    ready: Ready<'r>,
     t_max: &'a [f64; WIDTH],
     visited: Visited,
     visit: V,
@@ -223,15 +222,15 @@ impl<L: Lanes, V: FnMut(usize, MeshHit) -> ControlFlow<()>> EachAtLeaves<'_, '_,
         while rays.any() {
             for lane in rays.lanes() {
                 places[lane] = take_lane(&mut candidates[lane]);
-                corners.put(lane, &block.corners_on(self.spaces.axes.of(lane), places[lane]));
+                self.ready.put(&mut corners, lane, block, places[lane]);
             }
-            let meeting = self.spaces.meet::<L>(corners.lanes());
+            let meeting = self.ready.spaces.meet::<L>(corners.lanes());
             let (seen, rows) = (meeting.seen(), meeting.rows());
             for lane in rays.lanes() {
                 let meeting = if seen.has(lane) {
-                    rows.of(lane, self.spaces, &corners)
+                    rows.of(lane, self.ready.spaces, &corners)
                 } else {
-                    self.spaces.space(lane).meet::<L>(block.corners(places[lane]))
+                    self.ready.spaces.space(lane).meet::<L>(block.corners(places[lane]))
                 };
                 if let Some(meeting) = meeting
                     && meeting.is_within(0.0, self.t_max[lane])
@@ -253,16 +252,16 @@ impl<L: Lanes, V: FnMut(usize, MeshHit) -> ControlFlow<()>> EachAtLeaves<'_, '_,
 impl<L: Lanes, V: FnMut(usize, MeshHit) -> ControlFlow<()>> Finder for EachAtLeaves<'_, '_, L, V> {
     #[inline(always)]
     fn prefetch(&self, leaf: u32) {
-        L::Eight::prefetch(&self.mesh.blocks[leaf as usize]);
+        L::Eight::prefetch(self.ready.block(leaf));
     }
 
     #[inline(always)]
     fn leaf(&mut self, leaf: u32, rays: Bits) -> Bits {
-        let block = &self.mesh.blocks[leaf as usize];
+        let block = self.ready.block(leaf);
         let (mut candidates, mut open) = ([0; WIDTH], Bits::NONE);
         for lane in rays.lanes() {
-            let ray = self.triangles.spread::<L::Eight>(self.spaces.axes, lane);
-            if let Some(verdict) = ray.look(block, L::Eight::splat(self.group.limits[lane])) {
+            let ray = self.ready.ray::<L::Eight>(lane);
+            if let Some(verdict) = ray.look(block, L::Eight::splat(self.ready.group.limits[lane])) {
                 candidates[lane] = verdict.sure | verdict.unsure;
                 open |= Bits::lane(lane) & Bits::all_if(candidates[lane] != 0);
             }
@@ -281,23 +280,22 @@ impl<V: FnMut(usize, MeshHit) -> ControlFlow<()>> Work for Each<'_, V> {
     #[inline(always)]
     fn run<L: Lanes>(self) -> Bits {
         let Self { mesh, row, active, t_max, mut visit } = self;
-        let ([origin, direction], end) = (row.lanes::<L>(), L::load(t_max, 0));
+        let (LaneRay { origin, direction }, end) = (row.lanes::<L>(0), L::load(t_max, 0));
         let probes = mesh.tree.approach_together(origin, direction, active, end);
         let mut broken = Bits::NONE;
         for lane in probes.strange.lanes() {
             let is_broken = mesh.for_each_hit(&row.ray(lane), 0.0, t_max[lane], |hit| visit(lane, hit)).is_break();
             broken |= Bits::all_if(is_broken) & Bits::lane(lane);
         }
-        let spaces = &RaySpaces::new(origin, direction);
-        let rays = probes.plain & spaces.usable;
-        if rays.is_empty() {
+        if probes.plain.is_empty() {
             return broken;
         }
-        let group = &Group::new(&probes, end);
+        let (group, spaces) = (&Group::new(&probes, end), &RaySpaces::new(origin, direction));
         let triangles = &BlockLines::new(&probes, spaces.axes);
+        let (ready, rays) = (Ready { mesh, group, spaces, triangles }, probes.plain & spaces.usable);
         let visited = Visited::default();
         let lanes = std::marker::PhantomData;
-        let mut finder = EachAtLeaves::<L, _> { mesh, group, spaces, triangles, t_max, visited, visit, broken, lanes };
+        let mut finder = EachAtLeaves::<L, _> { ready, t_max, visited, visit, broken, lanes };
         group.each_in::<L::Eight>(&mesh.tree, rays, &mut finder);
         finder.broken
     }

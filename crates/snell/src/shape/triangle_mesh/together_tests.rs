@@ -3,12 +3,12 @@
 use std::ops::ControlFlow;
 
 use snell_math::Transform;
-use snell_math::lanes::{Bits, InstructionSet, LaneVector, Lanes, WIDTH, Work, dispatch};
+use snell_math::lanes::{Bits, InstructionSet, Lanes, WIDTH, Work, dispatch};
 
 use super::query_tests::{KINDS, Kind, mesh_of, ray_of};
 use super::*;
 use crate::accel::random::Random;
-use crate::shape::{LaneRay, LaneSurfacePoint};
+use crate::shape::{LaneSurfacePoint, RayRow};
 
 type Rows = [[f64; WIDTH]; 3];
 
@@ -94,8 +94,7 @@ impl Work for Together<'_> {
         let met =
             (0..WIDTH).fold(Bits::NONE, |met, lane| met | Bits::lane(lane) & Bits::all_if(closest[lane].is_some()));
         let triangles = closest.map(|hit| hit.map_or(0, |hit| hit.triangle));
-        let lanes = LaneRay::<L> { origin: LaneVector::load(&origin, 0), direction: LaneVector::load(&direction, 0) };
-        let (surface, done) = mesh.surfaces(&lanes, &triangles, met);
+        let (surface, done) = mesh.surfaces(&row.lanes::<L>(0), &triangles, met);
         assert_eq!(done.without(met), Bits::NONE);
         let LaneSurfacePoint { point, error, geometric_normal, shading_normal } = surface.carried(place);
         let (mut rows, mut errors): ([Rows; 3], [f64; WIDTH]) = Default::default();
