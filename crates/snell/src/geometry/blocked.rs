@@ -83,7 +83,7 @@ impl Work for BlockedInSpace<'_, '_> {
         space.bvh.each_together(&probes, ready, &mut finder);
         let mut blocked = finder.blocked;
         for lane in probes.strange.lanes() {
-            let (ray, distance) = (&group.ray(lane), shadows.distance[lane]);
+            let (ray, distance) = (group.ray(lane), shadows.distance[lane]);
             let is_blocked = space
                 .bvh
                 .any(ray, distance, |index| geometry.is_blocked_alone(space, outer, index, ray, lane, shadows));
@@ -133,7 +133,7 @@ impl<L: Lanes> PrimitiveFinder for BlockedFinder<'_, '_, '_, L> {
                     LaneSpheres::from(sphere).intersect_likely(&self.ray, self.distance).0 & rays
                 } else {
                     let lane = rays.lowest() & (WIDTH - 1);
-                    let (ray, distance) = (&self.group.ray(lane), self.shadows.distance[lane]);
+                    let (ray, distance) = (self.group.ray(lane), self.shadows.distance[lane]);
                     if sphere.intersect_likely(ray, 0.0, distance).is_some() { rays } else { Bits::NONE }
                 }
             }
@@ -209,7 +209,7 @@ impl Geometry {
             _ => {
                 let mut blocked = Bits::NONE;
                 for lane in rays.lanes() {
-                    if self.is_blocked_alone(space, outer, index, &group.ray(lane), lane, shadows) {
+                    if self.is_blocked_alone(space, outer, index, group.ray(lane), lane, shadows) {
                         blocked |= Bits::lane(lane);
                     }
                 }

@@ -4,6 +4,8 @@
 //! everything else by one ray after the other. Of hits at the same distance the lowest primitive's wins, in whatever order they
 //! are found, so the way through the tree may be anybody's.
 
+use std::cell::OnceCell;
+
 use snell_math::Ray;
 use snell_math::lanes::{Bits, Floats, Lanes, WIDTH, Work};
 
@@ -19,6 +21,9 @@ pub(super) struct RayGroup {
     direction: [[f64; WIDTH]; 3],
     /// See [`Touching`], in world units also where the rays are not.
     along: [f64; WIDTH],
+    /// Each by itself, where one is asked for: put together once, since what reads a ray as it has just been written, but in other
+    /// widths, waits for it.
+    rays: OnceCell<[Ray; WIDTH]>,
 }
 
 impl RayGroup {
@@ -33,7 +38,7 @@ impl RayGroup {
     #[inline(always)]
     fn with_along<L: Lanes>(ray: &LaneRay<L>, along: [f64; WIDTH]) -> Self {
         let rows = [[0.0; WIDTH]; 3];
-        let mut group = Self { origin: rows, direction: rows, along };
+        let mut group = Self { origin: rows, direction: rows, along, rays: OnceCell::new() };
         ray.origin.store(&mut group.origin, 0);
         ray.direction.store(&mut group.direction, 0);
         group
@@ -61,8 +66,9 @@ impl RayGroup {
 
     /// One of them.
     #[inline(always)]
-    pub(super) fn ray(&self, lane: usize) -> Ray {
-        self.row().ray(lane)
+    pub(super) fn ray(&self, lane: usize) -> &Ray {
+        let rays = self.rays.get_or_init(|| std::array::from_fn(|lane| self.row().ray(lane)));
+        &rays[lane & (WIDTH - 1)]
     }
 
     #[inline(always)]
@@ -204,7 +210,7 @@ impl Work for NearestInSpace<'_, '_> {
         let mut seeker = NearestSeeker::<L> { geometry, space, group, ready, ray, along, start, scale, found, scratch };
         space.bvh.nearest_together(&probes, ready, &mut seeker);
         for lane in probes.strange.lanes() {
-            let (ray, touching) = (&group.ray(lane), Touching(group.along[lane]));
+            let (ray, touching) = (group.ray(lane), Touching(group.along[lane]));
             let limit = found.key[lane];
             let nearest = space.nearest_bounded(ray, touching, limit, |primitive, is_opaque, limit| {
                 geometry.meet_in(space, primitive, is_opaque, ray, touching, limit, scratch)
@@ -236,7 +242,7 @@ impl<L: Lanes> PrimitiveSeeker for NearestSeeker<'_, '_, '_, L> {
                 return;
             }
             let lane = rays.lowest() & (WIDTH - 1);
-            if let Some(hit) = sphere.intersect_likely(&self.group.ray(lane), 0.0, f64::INFINITY) {
+            if let Some(hit) = sphere.intersect_likely(self.group.ray(lane), 0.0, f64::INFINITY) {
                 let is_opaque = self.space.attributes[index as usize].is_opaque;
                 let hit = Touching(self.group.along[lane]).candidate(hit.into(), is_opaque);
                 self.found.take(lane, index, &hit);
@@ -301,7 +307,7 @@ impl Geometry {
             }
             _ => {
                 for lane in rays.lanes() {
-                    let (ray, touching) = (&group.ray(lane), Touching(group.along[lane]));
+                    let (ray, touching) = (group.ray(lane), Touching(group.along[lane]));
                     let is_opaque = space.attributes[index as usize].is_opaque;
                     let met = self.meet_in(space, primitive, is_opaque, ray, touching, found.key[lane], scratch);
                     if let Some(hit) = met {
