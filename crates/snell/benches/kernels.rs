@@ -110,20 +110,23 @@ fn run(options: &Options) -> Result<(), String> {
     Ok(())
 }
 
-/// How often a hierarchy is built by one and by two threads.
-const BUILDS: usize = 3;
+/// How often a hierarchy is built by one and by two threads, at least and at most; in between until this many seconds are spent,
+/// since a build of a small mesh takes a few milliseconds, of which single ones say little.
+const BUILDS: [usize; 2] = [3, 25];
+const BUILDING: f64 = 0.5;
 
 /// Million triangles a second, the median of a few builds: of one thread's processor time, or of the clock's with several threads.
 fn build_rate(mesh: &Mesh, threads: usize, quality: BuildQuality) -> Result<f64, String> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| error.to_string())?;
-    let mut rates = Vec::new();
-    for _ in 0..BUILDS {
+    let (mut rates, mut sum) = (Vec::new(), 0.0);
+    while rates.len() < BUILDS[0] || rates.len() < BUILDS[1] && sum < BUILDING {
         let start = Instant::now();
         let (built, seconds) = pool.install(|| {
             let start = thread_seconds();
             (TriangleMesh::with_quality(mesh, quality), thread_seconds() - start)
         });
         let seconds = if threads == 1 { seconds } else { start.elapsed().as_secs_f64() };
+        sum += seconds;
         rates.push(built.map_err(|error| error.to_string())?.triangle_count() as f64 / seconds * 1e-6);
     }
     Ok(median(&mut rates))
