@@ -11,6 +11,7 @@ use super::packets::RayGroup;
 use super::space::{NONE, Primitive, Space};
 use super::{Geometry, Hit, LocalHit, LocalPlace, QueryScratch};
 use crate::accel::wide::{Group, PrimitiveFinder};
+use crate::shape::triangle_mesh::Sight;
 use crate::shape::{LaneRay, LaneSpheres, RayRow, Sphere};
 
 /// The instance of the world through which a prototype is seen: its number, and the material that it hands on.
@@ -42,7 +43,7 @@ impl Work for BlockedInWorld<'_, '_> {
         let group = &RayGroup::new(&rays.lanes::<L>(0));
         let (space, outer) = (&geometry.world, None);
         match index {
-            Some(index) => geometry.block_together::<L>(space, outer, index, group, active, shadows),
+            Some(index) => geometry.block_together::<L>(space, outer, index, group, None, active, shadows),
             None => BlockedInSpace { geometry, space, outer, group, active, shadows }.run::<L>(),
         }
     }
@@ -63,6 +64,7 @@ struct BlockedFinder<'a, 'r, 's, L> {
     space: &'a Space,
     outer: Outer,
     group: &'r RayGroup,
+    sight: Option<&'r Sight<'r>>,
     ray: LaneRay<L>,
     distance: L,
     blocked: Bits,
@@ -78,8 +80,10 @@ impl Work for BlockedInSpace<'_, '_> {
         let distance = L::load(shadows.distance, 0);
         let probes = space.bvh.tree().approach_together(ray.origin, ray.direction, active, distance);
         let ready = &Group::new(&probes, distance);
+        let sight = if space.has_meshes { Some(Sight::new(group.row(), &probes, ready)) } else { None };
+        let (sight, blocked) = (sight.as_ref(), Bits::NONE);
         let mut finder =
-            BlockedFinder::<L> { geometry, space, outer, group, ray, distance, blocked: Bits::NONE, shadows };
+            BlockedFinder::<L> { geometry, space, outer, group, sight, ray, distance, blocked, shadows };
         space.bvh.each_together(&probes, ready, &mut finder);
         let mut blocked = finder.blocked;
         for lane in probes.strange.lanes() {
@@ -138,7 +142,10 @@ impl<L: Lanes> PrimitiveFinder for BlockedFinder<'_, '_, '_, L> {
                 }
             }
             Primitive::Sphere(sphere) if rays.count() > 1 => self.gather_sphere(index, sphere, rays),
-            _ => self.geometry.block_together::<L>(self.space, self.outer, index, self.group, rays, self.shadows),
+            _ => {
+                let Self { geometry, space, outer, group, sight, .. } = *self;
+                geometry.block_together::<L>(space, outer, index, group, sight, rays, self.shadows)
+            }
         };
         self.blocked |= blocked;
         blocked
@@ -146,7 +153,9 @@ impl<L: Lanes> PrimitiveFinder for BlockedFinder<'_, '_, '_, L> {
 }
 
 impl Geometry {
-    /// Which rays are blocked by one primitive of a space, which may be any; what they meet of transparent ones is gathered.
+    /// Which rays are blocked by one primitive of a space, which may be any; what they meet of transparent ones is gathered. `sight` is
+    /// what is known of them there, if anything.
+    #[expect(clippy::too_many_arguments, reason = "it is asked from within loops that know all of these by themselves")]
     #[inline(never)]
     pub(super) fn block_together<L: Lanes>(
         &self,
@@ -154,6 +163,7 @@ impl Geometry {
         outer: Outer,
         index: u32,
         group: &RayGroup,
+        sight: Option<&Sight<'_>>,
         rays: Bits,
         shadows: &mut Shadows<'_>,
     ) -> Bits {
@@ -169,7 +179,7 @@ impl Geometry {
                 for alone in inner.first_alone..inner.primitives.len() {
                     let open = rays.without(blocked);
                     if open.any() {
-                        blocked |= self.block_together::<L>(inner, outer, alone as u32, &local, open, shadows);
+                        blocked |= self.block_together::<L>(inner, outer, alone as u32, &local, None, open, shadows);
                     }
                 }
                 let active = rays.without(blocked);
@@ -188,15 +198,17 @@ impl Geometry {
             Primitive::Mesh { mesh, .. } if shadows.any_blocks || space.attributes[index as usize].is_opaque => {
                 let mut carried = None;
                 let group = group.in_space_of::<L>(space, primitive, &mut carried);
-                self.meshes[*mesh as usize].any_together::<L>(group.row(), rays, shadows.distance)
+                let sight = if space.placement(primitive).is_none() { sight } else { None };
+                self.meshes[*mesh as usize].any_together::<L>(group.row(), sight, rays, shadows.distance)
             }
             Primitive::Mesh { mesh, .. } => {
                 let mut carried = None;
                 let group = group.in_space_of::<L>(space, primitive, &mut carried);
+                let sight = if space.placement(primitive).is_none() { sight } else { None };
                 let attributes = &space.attributes[index as usize];
                 let (number, inner, inherited) = names_of(outer, index);
                 let hits = &mut *shadows.hits;
-                self.meshes[*mesh as usize].each_together::<L>(group.row(), rays, shadows.distance, |lane, hit| {
+                self.meshes[*mesh as usize].each_together::<L>(group.row(), sight, rays, shadows.distance, |lane, hit| {
                     let LocalHit { t, place } = LocalHit::from(hit);
                     let material = self.material_of(primitive, attributes, inherited, place);
                     if !self.transparent[material as usize] {

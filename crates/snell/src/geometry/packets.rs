@@ -13,6 +13,7 @@ use super::lanes::{HitRows, key_of};
 use super::space::{NONE, Primitive, Space};
 use super::{Geometry, InnerHit, LocalHit, LocalPlace, Placement, QueryScratch, TOUCHING, Touching};
 use crate::accel::wide::{Group, PrimitiveSeeker, widened_measure};
+use crate::shape::triangle_mesh::Sight;
 use crate::shape::{LaneRay, LaneSpheres, RayRow};
 
 /// Rays side by side, in the space of what they are asked about.
@@ -167,7 +168,7 @@ impl Work for NearestInWorld<'_, '_> {
         let group = &RayGroup::new(&rays.lanes::<L>(0));
         let space = &geometry.world;
         match index {
-            Some(index) => geometry.meet_together::<L>(space, index, group, active, found, scratch),
+            Some(index) => geometry.meet_together::<L>(space, index, group, None, active, found, scratch),
             None => NearestInSpace { geometry, space, group, active, found, scratch }.run::<L>(),
         }
     }
@@ -188,6 +189,7 @@ struct NearestSeeker<'a, 'r, 'h, L> {
     space: &'a Space,
     group: &'r RayGroup,
     ready: &'r Group,
+    sight: Option<&'r Sight<'r>>,
     ray: LaneRay<L>,
     along: L,
     start: L,
@@ -205,9 +207,12 @@ impl Work for NearestInSpace<'_, '_> {
         let end = L::load(&found.key, 0);
         let probes = space.bvh.tree().approach_together(ray.origin, ray.direction, active, end);
         let ready = &Group::new(&probes, end);
+        let sight = if space.has_meshes { Some(Sight::new(group.row(), &probes, ready)) } else { None };
+        let sight = sight.as_ref();
         let along = L::load(&group.along, 0);
         let (start, scale) = (probes.start, probes.scale);
-        let mut seeker = NearestSeeker::<L> { geometry, space, group, ready, ray, along, start, scale, found, scratch };
+        let mut seeker =
+            NearestSeeker::<L> { geometry, space, group, ready, sight, ray, along, start, scale, found, scratch };
         space.bvh.nearest_together(&probes, ready, &mut seeker);
         for lane in probes.strange.lanes() {
             let (ray, touching) = (group.ray(lane), Touching(group.along[lane]));
@@ -250,7 +255,7 @@ impl<L: Lanes> PrimitiveSeeker for NearestSeeker<'_, '_, '_, L> {
             }
             return;
         }
-        self.geometry.meet_together::<L>(self.space, index, self.group, rays, self.found, self.scratch);
+        self.geometry.meet_together::<L>(self.space, index, self.group, self.sight, rays, self.found, self.scratch);
         for lane in rays.lanes() {
             limits[lane] = self.ready.limit(lane, self.found.key[lane]);
         }
@@ -258,13 +263,15 @@ impl<L: Lanes> PrimitiveSeeker for NearestSeeker<'_, '_, '_, L> {
 }
 
 impl Geometry {
-    /// The nearest hits of rays with one primitive of a space, which may be any.
+    /// The nearest hits of rays with one primitive of a space, which may be any; `sight` is what is known of them there, if anything.
+    #[expect(clippy::too_many_arguments, reason = "it is asked from within loops that know all of these by themselves")]
     #[inline(never)]
     pub(super) fn meet_together<L: Lanes>(
         &self,
         space: &Space,
         index: u32,
         group: &RayGroup,
+        sight: Option<&Sight<'_>>,
         rays: Bits,
         found: &mut Found<'_>,
         scratch: &mut QueryScratch,
@@ -279,7 +286,7 @@ impl Geometry {
                 let mut hits = HitRows::NOTHING;
                 let mut nearest = Found { key: found.key, hits: &mut hits, complex: Bits::NONE };
                 for alone in inner.first_alone..inner.primitives.len() {
-                    self.meet_together::<L>(inner, alone as u32, &local, rays, &mut nearest, scratch);
+                    self.meet_together::<L>(inner, alone as u32, &local, None, rays, &mut nearest, scratch);
                 }
                 if inner.first_alone > 0 {
                     let (geometry, found, group) = (self, &mut nearest, &local);
@@ -294,10 +301,11 @@ impl Geometry {
             Primitive::Mesh { mesh, .. } => {
                 let mut carried = None;
                 let group = group.in_space_of::<L>(space, primitive, &mut carried);
+                let sight = if space.placement(primitive).is_none() { sight } else { None };
                 let is_opaque = space.attributes[index as usize].is_opaque;
                 let mut hits = [None; WIDTH];
                 let t_max = found.key.map(f64::next_up);
-                self.meshes[*mesh as usize].intersect_together::<L>(group.row(), rays, &t_max, &mut hits);
+                self.meshes[*mesh as usize].intersect_together::<L>(group.row(), sight, rays, &t_max, &mut hits);
                 for lane in rays.lanes() {
                     if let Some(hit) = hits[lane] {
                         self.meshes[*mesh as usize].prefetch_triangle::<L::Eight>(hit.triangle);

@@ -118,6 +118,8 @@ pub struct Space {
     pub handful: SpherePairs,
     /// From which primitive on they are tested one by one.
     pub first_alone: usize,
+    /// Whether there are several meshes in the hierarchy that stand in the space as they are.
+    pub has_meshes: bool,
 }
 
 impl Space {
@@ -142,7 +144,9 @@ impl Space {
         let are_spheres = spheres.len() == bounded && bounded <= HANDFUL_OF_SPHERES;
         let handful = if are_spheres { SpherePairs::new(&spheres) } else { SpherePairs::default() };
         let first_alone = if !are_spheres && bounded <= HANDFUL { 0 } else { bounded };
-        Ok(Self { primitives, attributes, bounds, shapes, placements, object_spaces, bvh, handful, first_alone })
+        let stands = |primitive: &Primitive| matches!(primitive, Primitive::Mesh { placement: NONE, .. });
+        let has_meshes = primitives[..first_alone.min(bounded)].iter().filter(|primitive| stands(primitive)).count() > 1;
+        Ok(Self { has_meshes, primitives, attributes, bounds, shapes, placements, object_spaces, bvh, handful, first_alone })
     }
 }
 

@@ -7,6 +7,7 @@
 mod blocks;
 mod many;
 mod queries;
+mod sight;
 mod spaces;
 mod surfaces;
 mod together;
@@ -31,6 +32,7 @@ use super::SurfacePoint;
 use crate::accel::wide::{WideTree, roomy};
 use crate::accel::{BuildError, BuildOptions, BuildQuality, Bvh};
 use blocks::TriangleBlock;
+pub(crate) use sight::Sight;
 pub use topology::{EdgeFaces, MeshEdge};
 use watertight::{Meeting, RaySpace};
 

@@ -38,7 +38,7 @@ pub(crate) use group::{Finder, Seeker};
 pub(crate) use memory::roomy;
 pub(crate) use path::Path;
 pub(crate) use probe::{Approach, BoxLine, BoxRay, EPSILON, Measure, Probe, splat, widened_measure};
-pub(crate) use probes::{Probes, spread};
+pub(crate) use probes::{Probes, reciprocal, spread};
 pub(crate) use shared::{NONE, Visited, number};
 pub(crate) use slabs::Slabs;
 pub(crate) use stack::Stack;
@@ -114,6 +114,11 @@ impl WideTree {
     /// True where there is nothing.
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
+    }
+
+    /// The largest absolute coordinate of the box around everything.
+    pub fn extent(&self) -> f64 {
+        self.extent
     }
 
     /// The memory of the nodes, in bytes.

@@ -36,12 +36,55 @@ fn negative<L: Lanes>(x: L) -> Bits {
 
 /// Componentwise reciprocals.
 #[inline(always)]
-fn reciprocal<L: Lanes>(v: LaneVector<L>) -> LaneVector<L> {
+pub fn reciprocal<L: Lanes>(v: LaneVector<L>) -> LaneVector<L> {
     let one = L::splat(1.0);
     LaneVector { x: one / v.x, y: one / v.y, z: one / v.z }
 }
 
 impl WideTree {
+    /// Where rays enter the box around everything, not before 0, and leave it, not after `t_max`: as in `slabs.rs`; and those that
+    /// begin in it, whose entry means nothing.
+    #[inline(always)]
+    fn span<L: Lanes>(
+        &self,
+        from: LaneVector<L>,
+        along: LaneVector<L>,
+        inverse: LaneVector<L>,
+        t_max: L,
+    ) -> (L, L, Bits) {
+        let slack = L::splat(1.0 / (1_u64 << 48) as f64) * (from.max_abs() + L::splat(self.extent));
+        let slack = slack + L::splat(f64::MIN_POSITIVE);
+        let (mut start, mut leave, mut inside) = (L::splat(0.0), t_max, Bits::all_if(true));
+        let [low, high] = self.bounds.corners;
+        let axes = [(from.x, along.x, inverse.x), (from.y, along.y, inverse.y), (from.z, along.z, inverse.z)];
+        for (axis, (from, along, inverse)) in axes.into_iter().enumerate() {
+            let (low, high) = (L::splat(f64::from(low[axis])), L::splat(f64::from(high[axis])));
+            inside &= low.le(from) & from.le(high);
+            let (slack, back) = (slack.copysign(along), negative(along));
+            let near = (high.or_where_not(back, low) - (from + slack)) * inverse;
+            let far = (low.or_where_not(back, high) - (from - slack)) * inverse;
+            // So written, NaN changes nothing.
+            start = near.or_where_not(near.gt(start), start);
+            leave = far.or_where_not(far.lt(leave), leave);
+        }
+        (start, leave, inside)
+    }
+
+    /// Those of some rays, plain ones of a tree that this one is inside of, that come near this one before `t_max`; `inverse` is that of
+    /// their directions.
+    #[inline(always)]
+    pub fn passed<L: Lanes>(
+        &self,
+        from: LaneVector<L>,
+        along: LaneVector<L>,
+        inverse: LaneVector<L>,
+        rays: Bits,
+        t_max: L,
+    ) -> Bits {
+        let (start, leave, inside) = self.span(from, along, inverse, t_max);
+        rays & L::splat(0.0).le(t_max) & (inside | start.le(leave))
+    }
+
     /// As [`WideTree::approach`], from t = 0 on, of the active ones of rays side by side.
     #[inline(always)]
     pub fn approach_together<L: Lanes>(
@@ -60,24 +103,11 @@ impl WideTree {
             & L::splat(f64::MIN_POSITIVE).le(scale)
             & scale.lt(L::splat(f64::INFINITY));
         let inverse = reciprocal(along);
-        // Where it starts, and whether it gets there: as in `slabs.rs`.
-        let slack = L::splat(1.0 / (1_u64 << 48) as f64) * (reach + extent) + L::splat(f64::MIN_POSITIVE);
-        let (mut start, mut leave) = (zero, t_max);
-        let mut inside = Bits::all_if(true);
-        let [low, high] = self.bounds.corners;
-        let axes = [(from.x, along.x, inverse.x), (from.y, along.y, inverse.y), (from.z, along.z, inverse.z)];
-        for (axis, (from, along, inverse)) in axes.into_iter().enumerate() {
-            let (low, high) = (L::splat(f64::from(low[axis])), L::splat(f64::from(high[axis])));
-            inside &= low.le(from) & from.le(high);
+        for along in [along.x, along.y, along.z] {
             // The inverse of a number that is too small is of no use.
             plain &= along.same(zero) | L::splat(f64::MIN_POSITIVE).le(along.abs());
-            let (slack, back) = (slack.copysign(along), negative(along));
-            let near = (high.or_where_not(back, low) - (from + slack)) * inverse;
-            let far = (low.or_where_not(back, high) - (from - slack)) * inverse;
-            // So written, NaN changes nothing.
-            start = near.or_where_not(near.gt(start), start);
-            leave = far.or_where_not(far.lt(leave), leave);
         }
+        let (mut start, leave, inside) = self.span(from, along, inverse, t_max);
         let ahead = active & zero.le(t_max) & (inside | start.le(leave));
         start = zero.or_where_not(inside, start);
         let origin = from + along * start;

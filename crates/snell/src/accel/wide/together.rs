@@ -46,6 +46,14 @@ impl Group {
 }
 
 impl Group {
+    /// The limits of rays that go up to other parameters.
+    #[inline(always)]
+    pub fn limits_at<L: Lanes>(&self, t_max: L) -> [f32; WIDTH] {
+        let mut limits = [0.0; WIDTH];
+        widened_measure((t_max - L::load(&self.start, 0)) * L::load(&self.scale, 0)).store(&mut limits, 0);
+        limits
+    }
+
     /// Gives the leaves of the tree that some rays, plain ones, enter before their limits to the seeker.
     #[inline(always)]
     pub fn nearest_in<F: Eight>(

@@ -26,7 +26,7 @@
 //!
 //! [`watertight`]: super::watertight
 
-use snell_math::lanes::{Eight, Floats, Lanes, WIDTH};
+use snell_math::lanes::{Eight, Floats, LaneVector, Lanes, WIDTH};
 
 use super::spaces::LongAxes;
 use super::watertight::RaySpace;
@@ -123,11 +123,24 @@ pub(super) struct BlockLines {
 }
 
 impl BlockLines {
+    /// Of probes.
     #[inline(always)]
-    pub(super) fn new<L: Lanes>(probes: &Probes<L>, axes: LongAxes) -> Self {
+    pub(super) fn of<L: Lanes>(probes: &Probes<L>, axes: LongAxes) -> Self {
+        Self::new(probes.origin, probes.direction, probes.error, probes.extent, axes)
+    }
+
+    /// Of what a [`Probe`] has of the same names.
+    #[inline(always)]
+    pub(super) fn new<L: Lanes>(
+        origin: LaneVector<L>,
+        direction: LaneVector<L>,
+        error: L,
+        extent: f64,
+        axes: LongAxes,
+    ) -> Self {
         let row = [0.0; WIDTH];
         let mut lines = Self { slopes: [row; 2], origin: [row; 3], sign: row, error: row };
-        let (o, d) = (axes.in_order(probes.origin), axes.in_order(probes.direction));
+        let (o, d) = (axes.in_order(origin), axes.in_order(direction));
         let slopes = [-d.x * d.z, -d.y * d.z];
         slopes[0].to_floats().store(&mut lines.slopes[0], 0);
         slopes[1].to_floats().store(&mut lines.slopes[1], 0);
@@ -135,7 +148,7 @@ impl BlockLines {
         (o.y + slopes[1] * o.z).to_floats().store(&mut lines.origin[1], 0);
         o.z.to_floats().store(&mut lines.origin[2], 0);
         d.z.to_floats().store(&mut lines.sign, 0);
-        let error = L::splat(24.0 * f64::from(EPSILON) * probes.extent) + L::splat(2.0) * probes.error;
+        let error = L::splat(24.0 * f64::from(EPSILON) * extent) + L::splat(2.0) * error;
         error.to_floats().store(&mut lines.error, 0);
         lines
     }

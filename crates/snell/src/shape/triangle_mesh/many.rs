@@ -196,7 +196,7 @@ impl Work for SideBySide<'_, '_> {
                 }
             }
             let row = RayRow { origin: &origin, direction: &direction };
-            mesh.intersect_together::<L>(row, Bits::first(some.len()), &t_max, &mut found);
+            mesh.intersect_together::<L>(row, None, Bits::first(some.len()), &t_max, &mut found);
             hits.copy_from_slice(&found[..some.len()]);
         }
     }

@@ -6,6 +6,7 @@ use snell_math::lanes::{Bits, Eight, Floats, Lanes, WIDTH, Work};
 
 use super::blocks::{BlockLines, BlockRay, TriangleBlock};
 use super::queries::{LaneSpace, Question, Search, is_met_in};
+use super::sight::{Shared, Sight};
 use super::spaces::{Corners, RaySpaces};
 use super::{MeshHit, TriangleMesh};
 use crate::accel::wide::{Finder, Group, Seeker, Visited, number, take_lane};
@@ -21,6 +22,12 @@ struct Ready<'a> {
 }
 
 impl<'a> Ready<'a> {
+    /// Of what is known of the rays in the mesh's space.
+    #[inline(always)]
+    fn of(mesh: &'a TriangleMesh, Shared { group, spaces, triangles, .. }: Shared<'a>) -> Self {
+        Self { mesh, group, spaces, triangles }
+    }
+
     #[inline(always)]
     fn block(&self, leaf: u32) -> &'a TriangleBlock {
         &self.mesh.blocks[leaf as usize]
@@ -43,6 +50,7 @@ impl<'a> Ready<'a> {
 struct Closest<'a> {
     mesh: &'a TriangleMesh,
     row: RayRow<'a>,
+    shared: Option<Shared<'a>>,
     active: Bits,
     t_max: &'a [f64; WIDTH],
     hits: &'a mut [Option<MeshHit>; WIDTH],
@@ -105,26 +113,38 @@ impl Work for Closest<'_> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self { mesh, row, active, t_max, hits } = self;
-        let (LaneRay { origin, direction }, end) = (row.lanes::<L>(0), L::load(t_max, 0));
-        let probes = mesh.tree.approach_together(origin, direction, active, end);
-        for lane in probes.strange.lanes() {
-            hits[lane] = mesh.intersect(&row.ray(lane), 0.0, t_max[lane]);
+        let Self { mesh, row, shared, active, t_max, hits } = self;
+        let end = L::load(t_max, 0);
+        let (group, spaces, triangles);
+        let (ready, rays, mut limits);
+        if let Some(shared) = shared {
+            ready = Ready::of(mesh, shared);
+            rays = shared.passing(mesh, row, active, end);
+            limits = ready.group.limits_at(end);
+        } else {
+            let LaneRay { origin, direction } = row.lanes::<L>(0);
+            let probes = mesh.tree.approach_together(origin, direction, active, end);
+            for lane in probes.strange.lanes() {
+                hits[lane] = mesh.intersect(&row.ray(lane), 0.0, t_max[lane]);
+            }
+            if probes.plain.is_empty() {
+                return;
+            }
+            (group, spaces) = (Group::new(&probes, end), RaySpaces::new(origin, direction));
+            triangles = BlockLines::of(&probes, spaces.axes);
+            ready = Ready { mesh, group: &group, spaces: &spaces, triangles: &triangles };
+            (limits, rays) = (group.limits, probes.plain & spaces.usable);
         }
-        if probes.plain.is_empty() {
+        if rays.is_empty() {
             return;
         }
-        let (group, spaces) = (&Group::new(&probes, end), &RaySpaces::new(origin, direction));
-        let triangles = &BlockLines::new(&probes, spaces.axes);
-        let (ready, rays) = (Ready { mesh, group, spaces, triangles }, probes.plain & spaces.usable);
         let searches = &mut [const { Search::new(0.0, 0.0) }; WIDTH];
         for lane in rays.lanes() {
             searches[lane].restrict(t_max[lane]);
         }
-        let mut limits = group.limits;
         let lanes = std::marker::PhantomData;
         let mut seeker = ClosestAtLeaves::<L> { ready, searches, lanes };
-        group.nearest_in::<L::Eight>(&mesh.tree, rays, &mut limits, &mut seeker);
+        ready.group.nearest_in::<L::Eight>(&mesh.tree, rays, &mut limits, &mut seeker);
         seeker.settle(rays, &limits);
         for lane in rays.lanes() {
             hits[lane] = seeker.searches[lane].hit();
@@ -136,6 +156,7 @@ impl Work for Closest<'_> {
 struct Any<'a> {
     mesh: &'a TriangleMesh,
     row: RayRow<'a>,
+    shared: Option<Shared<'a>>,
     active: Bits,
     t_max: &'a [f64; WIDTH],
 }
@@ -176,22 +197,34 @@ impl Work for Any<'_> {
     type Output = Bits;
     #[inline(always)]
     fn run<L: Lanes>(self) -> Bits {
-        let Self { mesh, row, active, t_max } = self;
-        let (LaneRay { origin, direction }, end) = (row.lanes::<L>(0), L::load(t_max, 0));
-        let probes = mesh.tree.approach_together(origin, direction, active, end);
+        let Self { mesh, row, shared, active, t_max } = self;
+        let end = L::load(t_max, 0);
         let mut met = Bits::NONE;
-        for lane in probes.strange.lanes() {
-            met |= Bits::all_if(mesh.any(&row.ray(lane), 0.0, t_max[lane])) & Bits::lane(lane);
+        let (group, spaces, triangles);
+        let (ready, rays);
+        if let Some(shared) = shared {
+            ready = Ready::of(mesh, shared);
+            rays = shared.passing(mesh, row, active, end);
+        } else {
+            let LaneRay { origin, direction } = row.lanes::<L>(0);
+            let probes = mesh.tree.approach_together(origin, direction, active, end);
+            for lane in probes.strange.lanes() {
+                met |= Bits::all_if(mesh.any(&row.ray(lane), 0.0, t_max[lane])) & Bits::lane(lane);
+            }
+            if probes.plain.is_empty() {
+                return met;
+            }
+            (group, spaces) = (Group::new(&probes, end), RaySpaces::new(origin, direction));
+            triangles = BlockLines::of(&probes, spaces.axes);
+            ready = Ready { mesh, group: &group, spaces: &spaces, triangles: &triangles };
+            rays = probes.plain & spaces.usable;
         }
-        if probes.plain.is_empty() {
+        if rays.is_empty() {
             return met;
         }
-        let (group, spaces) = (&Group::new(&probes, end), &RaySpaces::new(origin, direction));
-        let triangles = &BlockLines::new(&probes, spaces.axes);
-        let (ready, rays) = (Ready { mesh, group, spaces, triangles }, probes.plain & spaces.usable);
         let lanes = std::marker::PhantomData;
         let mut finder = AnyAtLeaves::<L> { ready, t_max, met, lanes };
-        group.each_in::<L::Eight>(&mesh.tree, rays, &mut finder);
+        ready.group.each_in::<L::Eight>(&mesh.tree, rays, &mut finder);
         finder.met
     }
 }
@@ -200,6 +233,7 @@ impl Work for Any<'_> {
 struct Each<'a, V> {
     mesh: &'a TriangleMesh,
     row: RayRow<'a>,
+    shared: Option<Shared<'a>>,
     active: Bits,
     t_max: &'a [f64; WIDTH],
     visit: V,
@@ -279,24 +313,36 @@ impl<V: FnMut(usize, MeshHit) -> ControlFlow<()>> Work for Each<'_, V> {
     type Output = Bits;
     #[inline(always)]
     fn run<L: Lanes>(self) -> Bits {
-        let Self { mesh, row, active, t_max, mut visit } = self;
-        let (LaneRay { origin, direction }, end) = (row.lanes::<L>(0), L::load(t_max, 0));
-        let probes = mesh.tree.approach_together(origin, direction, active, end);
+        let Self { mesh, row, shared, active, t_max, mut visit } = self;
+        let end = L::load(t_max, 0);
         let mut broken = Bits::NONE;
-        for lane in probes.strange.lanes() {
-            let is_broken = mesh.for_each_hit(&row.ray(lane), 0.0, t_max[lane], |hit| visit(lane, hit)).is_break();
-            broken |= Bits::all_if(is_broken) & Bits::lane(lane);
+        let (group, spaces, triangles);
+        let (ready, rays);
+        if let Some(shared) = shared {
+            ready = Ready::of(mesh, shared);
+            rays = shared.passing(mesh, row, active, end);
+        } else {
+            let LaneRay { origin, direction } = row.lanes::<L>(0);
+            let probes = mesh.tree.approach_together(origin, direction, active, end);
+            for lane in probes.strange.lanes() {
+                let is_broken = mesh.for_each_hit(&row.ray(lane), 0.0, t_max[lane], |hit| visit(lane, hit)).is_break();
+                broken |= Bits::all_if(is_broken) & Bits::lane(lane);
+            }
+            if probes.plain.is_empty() {
+                return broken;
+            }
+            (group, spaces) = (Group::new(&probes, end), RaySpaces::new(origin, direction));
+            triangles = BlockLines::of(&probes, spaces.axes);
+            ready = Ready { mesh, group: &group, spaces: &spaces, triangles: &triangles };
+            rays = probes.plain & spaces.usable;
         }
-        if probes.plain.is_empty() {
+        if rays.is_empty() {
             return broken;
         }
-        let (group, spaces) = (&Group::new(&probes, end), &RaySpaces::new(origin, direction));
-        let triangles = &BlockLines::new(&probes, spaces.axes);
-        let (ready, rays) = (Ready { mesh, group, spaces, triangles }, probes.plain & spaces.usable);
         let visited = Visited::default();
         let lanes = std::marker::PhantomData;
         let mut finder = EachAtLeaves::<L, _> { ready, t_max, visited, visit, broken, lanes };
-        group.each_in::<L::Eight>(&mesh.tree, rays, &mut finder);
+        ready.group.each_in::<L::Eight>(&mesh.tree, rays, &mut finder);
         finder.broken
     }
 }
@@ -323,33 +369,47 @@ impl TriangleMesh {
         }
     }
 
-    /// [`TriangleMesh::intersect`] of the active ones of rays side by side, from t > 0 on.
+    /// [`TriangleMesh::intersect`] of the active ones of rays side by side, from t > 0 on. Where the mesh stands in a space with others,
+    /// `sight` is what is known of the rays there, of which the active ones are plain.
     #[inline(always)]
     pub(crate) fn intersect_together<L: Lanes>(
         &self,
         row: RayRow,
+        sight: Option<&Sight>,
         active: Bits,
         t_max: &[f64; WIDTH],
         hits: &mut [Option<MeshHit>; WIDTH],
     ) {
-        L::stage(Closest { mesh: self, row, active, t_max, hits });
+        let shared = sight.and_then(|sight| sight.of::<L>(self));
+        L::stage(Closest { mesh: self, row, shared, active, t_max, hits });
     }
 
-    /// [`TriangleMesh::any`] of the active ones of rays side by side, from t > 0 on.
+    /// [`TriangleMesh::any`] of the active ones of rays side by side, from t > 0 on. What is known of rays in a space is known of them up
+    /// to the same t here.
     #[inline(always)]
-    pub(crate) fn any_together<L: Lanes>(&self, row: RayRow, active: Bits, t_max: &[f64; WIDTH]) -> Bits {
-        L::stage(Any { mesh: self, row, active, t_max })
+    pub(crate) fn any_together<L: Lanes>(
+        &self,
+        row: RayRow,
+        sight: Option<&Sight>,
+        active: Bits,
+        t_max: &[f64; WIDTH],
+    ) -> Bits {
+        let shared = sight.and_then(|sight| sight.of::<L>(self));
+        L::stage(Any { mesh: self, row, shared, active, t_max })
     }
 
-    /// [`TriangleMesh::for_each_hit`] of the active ones of rays side by side, from t > 0 on; returns those for which `visit` broke.
+    /// [`TriangleMesh::for_each_hit`] of the active ones of rays side by side, from t > 0 on; returns those for which `visit` broke. As
+    /// for [`TriangleMesh::any_together`].
     #[inline(always)]
     pub(crate) fn each_together<L: Lanes>(
         &self,
         row: RayRow,
+        sight: Option<&Sight>,
         active: Bits,
         t_max: &[f64; WIDTH],
         visit: impl FnMut(usize, MeshHit) -> ControlFlow<()>,
     ) -> Bits {
-        L::stage(Each { mesh: self, row, active, t_max, visit })
+        let shared = sight.and_then(|sight| sight.of::<L>(self));
+        L::stage(Each { mesh: self, row, shared, active, t_max, visit })
     }
 }

@@ -8,6 +8,7 @@ use snell_math::lanes::{Bits, InstructionSet, Lanes, WIDTH, Work, dispatch};
 use super::query_tests::{KINDS, Kind, mesh_of, ray_of};
 use super::*;
 use crate::accel::random::Random;
+use crate::accel::wide::Group;
 use crate::shape::{LaneSurfacePoint, RayRow};
 
 type Rows = [[f64; WIDTH]; 3];
@@ -52,6 +53,8 @@ fn one_by_one(mesh: &TriangleMesh, rays: &[Ray; WIDTH], t_max: &[f64; WIDTH], pl
 
 struct Together<'a> {
     mesh: &'a TriangleMesh,
+    /// A tree that the mesh's is inside of, for which the rays are made ready.
+    around: Option<&'a WideTree>,
     rays: &'a [Ray; WIDTH],
     t_max: &'a [f64; WIDTH],
     place: &'a Transform,
@@ -62,7 +65,7 @@ impl Work for Together<'_> {
     type Output = (Answers, Bits);
     #[inline(always)]
     fn run<L: Lanes>(self) -> Self::Output {
-        let Self { mesh, rays, t_max, place } = self;
+        let Self { mesh, around, rays, t_max, place } = self;
         let (mut origin, mut direction): (Rows, Rows) = Default::default();
         for (lane, ray) in rays.iter().enumerate() {
             for axis in 0..3 {
@@ -70,12 +73,24 @@ impl Work for Together<'_> {
             }
         }
         let row = RayRow { origin: &origin, direction: &direction };
-        let every = Bits::first(WIDTH);
+        let (mut every, mut strange) = (Bits::first(WIDTH), Bits::NONE);
+        let group;
+        let sight = match around {
+            None => None,
+            Some(tree) => {
+                let (ray, end) = (row.lanes::<L>(0), L::load(t_max, 0));
+                let probes = tree.approach_together(ray.origin, ray.direction, every, end);
+                (every, strange) = (probes.plain, probes.strange);
+                group = Group::new(&probes, end);
+                Some(Sight::new(row, &probes, &group))
+            }
+        };
+        let sight = sight.as_ref();
         let mut closest = [None; WIDTH];
-        mesh.intersect_together::<L>(row, every, t_max, &mut closest);
-        let any = mesh.any_together::<L>(row, every, t_max);
+        mesh.intersect_together::<L>(row, sight, every, t_max, &mut closest);
+        let mut any = mesh.any_together::<L>(row, sight, every, t_max);
         let mut all: [Vec<(u32, u64)>; WIDTH] = Default::default();
-        let broken = mesh.each_together::<L>(row, every, t_max, |lane, hit| {
+        let broken = mesh.each_together::<L>(row, sight, every, t_max, |lane, hit| {
             all[lane].push((hit.triangle, hit.t.to_bits()));
             ControlFlow::Continue(())
         });
@@ -83,7 +98,7 @@ impl Work for Together<'_> {
         all.iter_mut().for_each(|all| all.sort_unstable());
         // Those that end at their second hit are those that have two.
         let mut count = [0; WIDTH];
-        let broken = mesh.each_together::<L>(row, every, t_max, |lane, _| {
+        let broken = mesh.each_together::<L>(row, sight, every, t_max, |lane, _| {
             count[lane] += 1;
             if count[lane] == 2 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
@@ -91,6 +106,12 @@ impl Work for Together<'_> {
             (0..WIDTH).all(|lane| broken.has(lane) == (all[lane].len() >= 2) && count[lane] == all[lane].len().min(2))
         );
 
+        // Those that have to be asked for one by one are so by whoever made them ready.
+        for lane in strange.lanes() {
+            let alone = one_by_one(mesh, rays, t_max, place);
+            (closest[lane], all[lane]) = (alone.closest[lane], alone.all[lane].clone());
+            any |= Bits::lane(lane) & Bits::all_if(alone.any[lane]);
+        }
         let met =
             (0..WIDTH).fold(Bits::NONE, |met, lane| met | Bits::lane(lane) & Bits::all_if(closest[lane].is_some()));
         let triangles = closest.map(|hit| hit.map_or(0, |hit| hit.triangle));
@@ -165,7 +186,7 @@ fn rays_side_by_side_find_the_same() {
                     let expected = one_by_one(&mesh, &rays, &t_max, &place);
                     for set in with_lanes() {
                         let mesh = mesh.clone().with_instructions(set);
-                        let work = Together { mesh: &mesh, rays: &rays, t_max: &t_max, place: &place };
+                        let work = Together { mesh: &mesh, around: None, rays: &rays, t_max: &t_max, place: &place };
                         let (mut found, by_lanes) = dispatch(set, work);
                         met += found.closest.iter().flatten().count();
                         done += by_lanes.count() as usize;
@@ -182,6 +203,44 @@ fn rays_side_by_side_find_the_same() {
     assert!(met > 10_000 && done * 10 > met * 7, "{met} {done}");
 }
 
+/// A tree over a mesh and a box that is so many times larger.
+fn tree_around(mesh: &TriangleMesh, larger: f64) -> WideTree {
+    let Bounds3 { min, max } = mesh.bounds();
+    let extent = min.max_abs().max(max.max_abs()) * larger;
+    let far = Bounds3::new(Point3::new(0.1 * extent, -extent, 0.0), Point3::new(0.2 * extent, 0.0, 0.3 * extent));
+    let bvh = Bvh::build(&[mesh.bounds(), far]);
+    WideTree::new(&bvh.expect("finite boxes")).0
+}
+
+#[test]
+fn what_is_made_ready_for_a_space_serves_its_meshes() {
+    let mut random = Random(53);
+    let mut met = [0; 3];
+    for kind in KINDS {
+        for (count, scale, offset) in [(1, 1.0, 0.0), (80, 1.0, 30.0), (200, 1e6, 0.0), (60, 1e-9, 0.0)] {
+            let offset = random.vector() * (offset * scale);
+            let mesh = mesh_of(kind, count, scale, offset, &mut random);
+            for (larger, met) in [1.0, 7.0, 1000.0].into_iter().zip(&mut met) {
+                let (around, place) = (tree_around(&mesh, larger), Transform::default());
+                for first in 0..20 {
+                    let (rays, t_max) = rays_at(&mesh, scale.max(offset.length()), 8 * first, &mut random);
+                    let expected = one_by_one(&mesh, &rays, &t_max, &place);
+                    for set in with_lanes() {
+                        let mesh = mesh.clone().with_instructions(set);
+                        let around = Some(&around);
+                        let work = Together { mesh: &mesh, around, rays: &rays, t_max: &t_max, place: &place };
+                        let mut found = dispatch(set, work).0;
+                        *met += found.closest.iter().flatten().count();
+                        found.surfaces = expected.surfaces;
+                        assert_eq!(found, expected, "{kind:?} {count} {scale} {larger} {set:?} {rays:?}");
+                    }
+                }
+            }
+        }
+    }
+    assert!(met.into_iter().all(|met| met > 2000), "{met:?}");
+}
+
 /// The twin: what other rays find is told from it, in each of the answers.
 #[test]
 fn what_other_rays_find_is_told() {
@@ -193,7 +252,7 @@ fn what_other_rays_find_is_told() {
         let expected = one_by_one(&mesh, &rays, &t_max, &place);
         rays.rotate_left(1);
         for set in with_lanes() {
-            let work = Together { mesh: &mesh, rays: &rays, t_max: &t_max, place: &place };
+            let work = Together { mesh: &mesh, around: None, rays: &rays, t_max: &t_max, place: &place };
             let found = dispatch(set, work).0;
             told[0] += usize::from(found.closest != expected.closest);
             told[1] += usize::from(found.any != expected.any);
