@@ -209,7 +209,8 @@ impl Compiler<'_> {
         } else {
             self.is_opaque(material)
         };
-        let open_edges = compiled.boundary_edges();
+        // Light does not go into what is opaque.
+        let open_edges = if is_opaque { 0 } else { compiled.boundary_edges() };
         if !is_opaque && open_edges > 0 && self.warned.insert(std::ptr::from_ref(object)) {
             let name = object.name.as_deref().unwrap_or(&description.name);
             let message =
