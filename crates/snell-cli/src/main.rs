@@ -14,6 +14,7 @@ mod glass;
 mod interrupt;
 mod load;
 mod map;
+mod memory;
 mod output;
 mod paths;
 mod preview;
@@ -34,6 +35,9 @@ use crate::arguments::{Arguments, Command};
 use crate::console::{quoted, say, write_stdout};
 use crate::failure::{FINE, Failure};
 use crate::statistics::Stopwatch;
+
+#[global_allocator]
+static MEMORY: memory::LargePages = memory::LargePages;
 
 fn main() -> ExitCode {
     let watch = Stopwatch::start();

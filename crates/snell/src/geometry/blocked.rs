@@ -82,8 +82,7 @@ impl Work for BlockedInSpace<'_, '_> {
         let ready = &Group::new(&probes, distance);
         let sight = if space.has_meshes { Some(Sight::new(group.row(), &probes, ready)) } else { None };
         let (sight, blocked) = (sight.as_ref(), Bits::NONE);
-        let mut finder =
-            BlockedFinder::<L> { geometry, space, outer, group, sight, ray, distance, blocked, shadows };
+        let mut finder = BlockedFinder::<L> { geometry, space, outer, group, sight, ray, distance, blocked, shadows };
         space.bvh.each_together(&probes, ready, &mut finder);
         let mut blocked = finder.blocked;
         for lane in probes.strange.lanes() {
@@ -208,15 +207,21 @@ impl Geometry {
                 let attributes = &space.attributes[index as usize];
                 let (number, inner, inherited) = names_of(outer, index);
                 let hits = &mut *shadows.hits;
-                self.meshes[*mesh as usize].each_together::<L>(group.row(), sight, rays, shadows.distance, |lane, hit| {
-                    let LocalHit { t, place } = LocalHit::from(hit);
-                    let material = self.material_of(primitive, attributes, inherited, place);
-                    if !self.transparent[material as usize] {
-                        return ControlFlow::Break(());
-                    }
-                    hits.push((lane as u8, Hit { t, primitive: number, inner, place }));
-                    ControlFlow::Continue(())
-                })
+                self.meshes[*mesh as usize].each_together::<L>(
+                    group.row(),
+                    sight,
+                    rays,
+                    shadows.distance,
+                    |lane, hit| {
+                        let LocalHit { t, place } = LocalHit::from(hit);
+                        let material = self.material_of(primitive, attributes, inherited, place);
+                        if !self.transparent[material as usize] {
+                            return ControlFlow::Break(());
+                        }
+                        hits.push((lane as u8, Hit { t, primitive: number, inner, place }));
+                        ControlFlow::Continue(())
+                    },
+                )
             }
             _ => {
                 let mut blocked = Bits::NONE;

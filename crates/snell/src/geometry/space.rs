@@ -145,8 +145,20 @@ impl Space {
         let handful = if are_spheres { SpherePairs::new(&spheres) } else { SpherePairs::default() };
         let first_alone = if !are_spheres && bounded <= HANDFUL { 0 } else { bounded };
         let stands = |primitive: &Primitive| matches!(primitive, Primitive::Mesh { placement: NONE, .. });
-        let has_meshes = primitives[..first_alone.min(bounded)].iter().filter(|primitive| stands(primitive)).count() > 1;
-        Ok(Self { has_meshes, primitives, attributes, bounds, shapes, placements, object_spaces, bvh, handful, first_alone })
+        let has_meshes =
+            primitives[..first_alone.min(bounded)].iter().filter(|primitive| stands(primitive)).count() > 1;
+        Ok(Self {
+            has_meshes,
+            primitives,
+            attributes,
+            bounds,
+            shapes,
+            placements,
+            object_spaces,
+            bvh,
+            handful,
+            first_alone,
+        })
     }
 }
 
