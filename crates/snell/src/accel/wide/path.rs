@@ -21,7 +21,7 @@ pub struct Path {
 impl Path {
     /// At the root.
     #[inline(always)]
-    pub fn new() -> Self {
+    pub const fn new() -> Self {
         Self { current: 0, height: 0, stack: Stack::new() }
     }
 

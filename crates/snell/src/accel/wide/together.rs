@@ -4,7 +4,7 @@ use snell_math::lanes::{Bits, Eight, Floats, Lanes, WIDTH};
 
 use super::group::{Finder, Seeker, column_of};
 use super::hulls::BallLines;
-use super::probe::{Measure, widened_measure};
+use super::probe::{BoxRay, Measure, widened_measure};
 use super::probes::{BoxLines, Probes};
 use super::shared::{NONE, number};
 use super::traverse::take_lane;
@@ -36,6 +36,12 @@ impl Group {
     pub fn measure(&self, lane: usize) -> Measure {
         let lane = lane & (WIDTH - 1);
         Measure { start: self.start[lane], scale: self.scale[lane] }
+    }
+
+    /// One ray, ready for boxes.
+    #[inline(always)]
+    pub fn ray<F: Eight>(&self, lane: usize) -> BoxRay<F> {
+        self.lines.spread(lane)
     }
 
     /// Lowers the limit of a ray to a parameter.

@@ -136,11 +136,24 @@ impl Work for Many<'_, '_> {
 pub(super) fn closest(mesh: &TriangleMesh, rays: &[Ray], t_min: f64, t_max: &[f64], hits: &mut [Option<MeshHit>]) {
     if t_min == 0.0 && are_coherent(rays) {
         side_by_side(mesh, rays, t_max, hits);
-    } else if mesh.tree.bytes() + size_of_val(mesh.blocks.as_slice()) >= LARGE {
+    } else if is_large(mesh) {
         in_flight(mesh, rays, t_min, t_max, hits);
     } else {
         one_by_one(mesh, rays, t_min, t_max, hits);
     }
+}
+
+/// Whether nodes and blocks are more than the caches hold.
+#[inline(always)]
+pub(super) fn is_large(mesh: &TriangleMesh) -> bool {
+    mesh.tree.bytes() + size_of_val(mesh.blocks.as_slice()) >= LARGE
+}
+
+/// Whether two rays go less than 15 degrees apart.
+#[inline(always)]
+pub(super) fn go_the_same_way(a: &Ray, b: &Ray) -> bool {
+    let (a, b) = (a.direction, b.direction);
+    a.dot(b) > 0.966 * (a.length_squared() * b.length_squared()).sqrt()
 }
 
 fn one_by_one(mesh: &TriangleMesh, rays: &[Ray], t_min: f64, t_max: &[f64], hits: &mut [Option<MeshHit>]) {
@@ -149,15 +162,13 @@ fn one_by_one(mesh: &TriangleMesh, rays: &[Ray], t_min: f64, t_max: &[f64], hits
     }
 }
 
-/// Whether neighbours go much the same way, as far as some of them show: less than 15 degrees apart, in three of four rows of eight.
+/// Whether neighbours go much the same way, as far as some of them show: in three of four rows of eight.
 fn are_coherent(rays: &[Ray]) -> bool {
     let rows = rays.chunks_exact(WIDTH);
     let stride = (rows.len() / 16).max(1);
     let (mut alike, mut asked) = (0, 0);
     for row in rows.step_by(stride) {
-        let [first, last] = [row[0].direction, row[WIDTH - 1].direction];
-        let cosine = first.dot(last) / (first.length() * last.length());
-        alike += usize::from(cosine > 0.966);
+        alike += usize::from(go_the_same_way(&row[0], &row[WIDTH - 1]));
         asked += 1;
     }
     asked > 0 && alike * 4 >= asked * 3

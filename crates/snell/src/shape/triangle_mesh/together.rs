@@ -5,11 +5,12 @@ use std::ops::ControlFlow;
 use snell_math::lanes::{Bits, Eight, Floats, Lanes, WIDTH, Work};
 
 use super::blocks::{BlockLines, BlockRay, TriangleBlock};
+use super::many;
 use super::queries::{LaneSpace, Question, Search, is_met_in};
 use super::sight::{Shared, Sight};
 use super::spaces::{Corners, RaySpaces};
 use super::{MeshHit, TriangleMesh};
-use crate::accel::wide::{Finder, Group, Seeker, Visited, number, take_lane};
+use crate::accel::wide::{Finder, Group, Path, Seeker, Visited, number, take_lane};
 use crate::shape::{LaneRay, RayRow};
 
 /// Rays side by side, made ready for a mesh: what is known of them stands with whoever asks, since it is too large to be moved.
@@ -46,8 +47,8 @@ impl<'a> Ready<'a> {
     }
 }
 
-/// The question for the closest hits.
-struct Closest<'a> {
+/// The question for the closest hits; where the rays fly, each goes its own way, see [`ClosestAtLeaves::in_flight`].
+struct Closest<'a, const FLIES: bool> {
     mesh: &'a TriangleMesh,
     row: RayRow<'a>,
     shared: Option<Shared<'a>>,
@@ -71,16 +72,46 @@ impl<L: Lanes> Seeker for ClosestAtLeaves<'_, L> {
     #[inline(always)]
     fn leaf(&mut self, leaf: u32, rays: Bits, limits: &mut [f32; WIDTH]) {
         for lane in rays.lanes() {
-            let ray = self.ready.ray::<L::Eight>(lane);
-            let Ready { mesh, group, spaces, .. } = self.ready;
-            let (space, measure) = (LaneSpace(spaces, lane), group.measure(lane));
-            let question = Question { blocks: &mesh.blocks, space, measure };
-            self.searches[lane].leaf::<L>(&question, &ray, leaf, &mut limits[lane]);
+            self.look(leaf, lane, limits);
         }
     }
 }
 
 impl<L: Lanes> ClosestAtLeaves<'_, L> {
+    /// Looks at a leaf for one ray.
+    #[inline(always)]
+    fn look(&mut self, leaf: u32, lane: usize, limits: &mut [f32; WIDTH]) {
+        let ray = self.ready.ray::<L::Eight>(lane);
+        let Ready { mesh, group, spaces, .. } = self.ready;
+        let (space, measure) = (LaneSpace(spaces, lane), group.measure(lane));
+        let question = Question { blocks: &mesh.blocks, space, measure };
+        self.searches[lane].leaf::<L>(&question, &ray, leaf, &mut limits[lane]);
+    }
+
+    /// Each ray by itself, but a step of each in turn, so that they wait for memory together.
+    #[inline(always)]
+    fn in_flight(&mut self, mut rays: Bits, limits: &mut [f32; WIDTH]) {
+        let (tree, blocks) = (&self.ready.mesh.tree, &self.ready.mesh.blocks);
+        let mut paths = [const { Path::new() }; WIDTH];
+        while rays.any() {
+            for lane in rays.lanes() {
+                let path = &mut paths[lane];
+                let goes_on = match path.leaf() {
+                    None => path.descend(tree, &self.ready.group.ray::<L::Eight>(lane), limits[lane]),
+                    Some(leaf) => {
+                        self.look(leaf, lane, limits);
+                        path.leave(limits[lane])
+                    }
+                };
+                if goes_on {
+                    path.prefetch::<L::Eight>(tree, |leaf| L::Eight::prefetch(&blocks[leaf as usize]));
+                } else {
+                    rays = rays.without(Bits::lane(lane));
+                }
+            }
+        }
+    }
+
     /// Decides about what waits, a triangle of each ray at a time.
     #[inline(always)]
     fn settle(&mut self, mut rays: Bits, limits: &[f32; WIDTH]) {
@@ -109,7 +140,14 @@ impl<L: Lanes> ClosestAtLeaves<'_, L> {
     }
 }
 
-impl Work for Closest<'_> {
+/// Whether the first and the last of some rays go much the same way.
+#[inline(always)]
+fn are_coherent(row: RayRow, rays: Bits) -> bool {
+    let last = (u32::BITS - 1).saturating_sub(rays.mask().leading_zeros());
+    many::go_the_same_way(&row.ray(rays.lowest() & (WIDTH - 1)), &row.ray(last as usize & (WIDTH - 1)))
+}
+
+impl<const FLIES: bool> Work for Closest<'_, FLIES> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
@@ -144,7 +182,11 @@ impl Work for Closest<'_> {
         }
         let lanes = std::marker::PhantomData;
         let mut seeker = ClosestAtLeaves::<L> { ready, searches, lanes };
-        ready.group.nearest_in::<L::Eight>(&mesh.tree, rays, &mut limits, &mut seeker);
+        if FLIES {
+            seeker.in_flight(rays, &mut limits);
+        } else {
+            ready.group.nearest_in::<L::Eight>(&mesh.tree, rays, &mut limits, &mut seeker);
+        }
         seeker.settle(rays, &limits);
         for lane in rays.lanes() {
             hits[lane] = seeker.searches[lane].hit();
@@ -380,8 +422,28 @@ impl TriangleMesh {
         t_max: &[f64; WIDTH],
         hits: &mut [Option<MeshHit>; WIDTH],
     ) {
+        let flies = many::is_large(self) && !are_coherent(row, active);
+        self.closest_together::<L>(row, sight, active, t_max, hits, flies);
+    }
+
+    /// The same, in flight or not.
+    #[inline(always)]
+    pub(super) fn closest_together<L: Lanes>(
+        &self,
+        row: RayRow,
+        sight: Option<&Sight>,
+        active: Bits,
+        t_max: &[f64; WIDTH],
+        hits: &mut [Option<MeshHit>; WIDTH],
+        flies: bool,
+    ) {
         let shared = sight.and_then(|sight| sight.of::<L>(self));
-        L::stage(Closest { mesh: self, row, shared, active, t_max, hits });
+        // Two functions, since meshes that the caches hold should not carry around what the others need.
+        if flies {
+            L::stage(Closest::<true> { mesh: self, row, shared, active, t_max, hits });
+        } else {
+            L::stage(Closest::<false> { mesh: self, row, shared, active, t_max, hits });
+        }
     }
 
     /// [`TriangleMesh::any`] of the active ones of rays side by side, from t > 0 on. What is known of rays in a space is known of them up

@@ -88,6 +88,9 @@ impl Work for Together<'_> {
         let sight = sight.as_ref();
         let mut closest = [None; WIDTH];
         mesh.intersect_together::<L>(row, sight, every, t_max, &mut closest);
+        let mut in_flight = [None; WIDTH];
+        mesh.closest_together::<L>(row, sight, every, t_max, &mut in_flight, true);
+        assert_eq!(in_flight, closest);
         let mut any = mesh.any_together::<L>(row, sight, every, t_max);
         let mut all: [Vec<(u32, u64)>; WIDTH] = Default::default();
         let broken = mesh.each_together::<L>(row, sight, every, t_max, |lane, hit| {
