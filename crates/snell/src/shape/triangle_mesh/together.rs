@@ -1,5 +1,6 @@
 //! Rays side by side and a mesh: through its hierarchy together, and each triangle by the same tests as one ray alone.
 
+use std::mem::MaybeUninit;
 use std::ops::ControlFlow;
 
 use snell_math::lanes::{Bits, Eight, Floats, Lanes, WIDTH, Work};
@@ -22,11 +23,40 @@ struct Ready<'a> {
     triangles: &'a BlockLines,
 }
 
+/// What is made ready for one mesh alone.
+struct Own {
+    group: Group,
+    spaces: RaySpaces,
+    triangles: BlockLines,
+}
+
 impl<'a> Ready<'a> {
-    /// Of what is known of the rays in the mesh's space.
+    /// Makes rays ready for a mesh, by what is known of them in its space, or else in a place for it; with those that come near the mesh,
+    /// none where nothing is ready, and those that have to be asked for one by one.
     #[inline(always)]
-    fn of(mesh: &'a TriangleMesh, Shared { group, spaces, triangles, .. }: Shared<'a>) -> Self {
-        Self { mesh, group, spaces, triangles }
+    fn new<L: Lanes>(
+        mesh: &'a TriangleMesh,
+        row: RayRow,
+        shared: Option<Shared<'a>>,
+        active: Bits,
+        t_max: L,
+        own: &'a mut MaybeUninit<Own>,
+    ) -> (Option<Self>, Bits, Bits) {
+        if let Some(shared) = shared {
+            let rays = shared.passing(mesh, row, active, t_max);
+            let Shared { group, spaces, triangles, .. } = shared;
+            let ready = Self { mesh, group, spaces, triangles };
+            return (if rays.any() { Some(ready) } else { None }, rays, Bits::NONE);
+        }
+        let LaneRay { origin, direction } = row.lanes::<L>(0);
+        let probes = mesh.tree.approach_together(origin, direction, active, t_max);
+        if probes.plain.is_empty() {
+            return (None, Bits::NONE, probes.strange);
+        }
+        let spaces = RaySpaces::new(origin, direction);
+        let (group, triangles) = (Group::new(&probes, t_max), BlockLines::of(&probes, spaces.axes));
+        let Own { group, spaces, triangles } = own.write(Own { group, spaces, triangles });
+        (Some(Self { mesh, group, spaces, triangles }), probes.plain & spaces.usable, probes.strange)
     }
 
     #[inline(always)]
@@ -152,30 +182,13 @@ impl<const FLIES: bool> Work for Closest<'_, FLIES> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let Self { mesh, row, shared, active, t_max, hits } = self;
-        let end = L::load(t_max, 0);
-        let (group, spaces, triangles);
-        let (ready, rays, mut limits);
-        if let Some(shared) = shared {
-            ready = Ready::of(mesh, shared);
-            rays = shared.passing(mesh, row, active, end);
-            limits = ready.group.limits_at(end);
-        } else {
-            let LaneRay { origin, direction } = row.lanes::<L>(0);
-            let probes = mesh.tree.approach_together(origin, direction, active, end);
-            for lane in probes.strange.lanes() {
-                hits[lane] = mesh.intersect(&row.ray(lane), 0.0, t_max[lane]);
-            }
-            if probes.plain.is_empty() {
-                return;
-            }
-            (group, spaces) = (Group::new(&probes, end), RaySpaces::new(origin, direction));
-            triangles = BlockLines::of(&probes, spaces.axes);
-            ready = Ready { mesh, group: &group, spaces: &spaces, triangles: &triangles };
-            (limits, rays) = (group.limits, probes.plain & spaces.usable);
+        let (end, mut own) = (L::load(t_max, 0), MaybeUninit::uninit());
+        let (ready, rays, strange) = Ready::new(mesh, row, shared, active, end, &mut own);
+        for lane in strange.lanes() {
+            hits[lane] = mesh.intersect(&row.ray(lane), 0.0, t_max[lane]);
         }
-        if rays.is_empty() {
-            return;
-        }
+        let Some(ready) = ready else { return };
+        let mut limits = ready.group.limits_at(end);
         let searches = &mut [const { Search::new(0.0, 0.0) }; WIDTH];
         for lane in rays.lanes() {
             searches[lane].restrict(t_max[lane]);
@@ -240,30 +253,13 @@ impl Work for Any<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) -> Bits {
         let Self { mesh, row, shared, active, t_max } = self;
-        let end = L::load(t_max, 0);
+        let (end, mut own) = (L::load(t_max, 0), MaybeUninit::uninit());
+        let (ready, rays, strange) = Ready::new(mesh, row, shared, active, end, &mut own);
         let mut met = Bits::NONE;
-        let (group, spaces, triangles);
-        let (ready, rays);
-        if let Some(shared) = shared {
-            ready = Ready::of(mesh, shared);
-            rays = shared.passing(mesh, row, active, end);
-        } else {
-            let LaneRay { origin, direction } = row.lanes::<L>(0);
-            let probes = mesh.tree.approach_together(origin, direction, active, end);
-            for lane in probes.strange.lanes() {
-                met |= Bits::all_if(mesh.any(&row.ray(lane), 0.0, t_max[lane])) & Bits::lane(lane);
-            }
-            if probes.plain.is_empty() {
-                return met;
-            }
-            (group, spaces) = (Group::new(&probes, end), RaySpaces::new(origin, direction));
-            triangles = BlockLines::of(&probes, spaces.axes);
-            ready = Ready { mesh, group: &group, spaces: &spaces, triangles: &triangles };
-            rays = probes.plain & spaces.usable;
+        for lane in strange.lanes() {
+            met |= Bits::all_if(mesh.any(&row.ray(lane), 0.0, t_max[lane])) & Bits::lane(lane);
         }
-        if rays.is_empty() {
-            return met;
-        }
+        let Some(ready) = ready else { return met };
         let lanes = std::marker::PhantomData;
         let mut finder = AnyAtLeaves::<L> { ready, t_max, met, lanes };
         ready.group.each_in::<L::Eight>(&mesh.tree, rays, &mut finder);
@@ -356,31 +352,14 @@ impl<V: FnMut(usize, MeshHit) -> ControlFlow<()>> Work for Each<'_, V> {
     #[inline(always)]
     fn run<L: Lanes>(self) -> Bits {
         let Self { mesh, row, shared, active, t_max, mut visit } = self;
-        let end = L::load(t_max, 0);
+        let (end, mut own) = (L::load(t_max, 0), MaybeUninit::uninit());
+        let (ready, rays, strange) = Ready::new(mesh, row, shared, active, end, &mut own);
         let mut broken = Bits::NONE;
-        let (group, spaces, triangles);
-        let (ready, rays);
-        if let Some(shared) = shared {
-            ready = Ready::of(mesh, shared);
-            rays = shared.passing(mesh, row, active, end);
-        } else {
-            let LaneRay { origin, direction } = row.lanes::<L>(0);
-            let probes = mesh.tree.approach_together(origin, direction, active, end);
-            for lane in probes.strange.lanes() {
-                let is_broken = mesh.for_each_hit(&row.ray(lane), 0.0, t_max[lane], |hit| visit(lane, hit)).is_break();
-                broken |= Bits::all_if(is_broken) & Bits::lane(lane);
-            }
-            if probes.plain.is_empty() {
-                return broken;
-            }
-            (group, spaces) = (Group::new(&probes, end), RaySpaces::new(origin, direction));
-            triangles = BlockLines::of(&probes, spaces.axes);
-            ready = Ready { mesh, group: &group, spaces: &spaces, triangles: &triangles };
-            rays = probes.plain & spaces.usable;
+        for lane in strange.lanes() {
+            let is_broken = mesh.for_each_hit(&row.ray(lane), 0.0, t_max[lane], |hit| visit(lane, hit)).is_break();
+            broken |= Bits::all_if(is_broken) & Bits::lane(lane);
         }
-        if rays.is_empty() {
-            return broken;
-        }
+        let Some(ready) = ready else { return broken };
         let visited = Visited::default();
         let lanes = std::marker::PhantomData;
         let mut finder = EachAtLeaves::<L, _> { ready, t_max, visited, visit, broken, lanes };
