@@ -2,6 +2,10 @@
 //! then hands out, and clears, one page where it would be five hundred, and the processor finds more of them at once.
 
 use std::alloc::{GlobalAlloc, Layout, System};
+use std::mem::MaybeUninit;
+use std::slice;
+
+use snell::accel::ask_for_large_pages;
 
 /// The system's allocator, which asks for large pages behind whatever is large.
 pub struct LargePages;
@@ -36,26 +40,11 @@ unsafe impl GlobalAlloc for LargePages {
 #[inline]
 fn advised(memory: *mut u8, size: usize) -> *mut u8 {
     if size >= LARGE && !memory.is_null() {
-        advise(memory, size);
+        // SAFETY: memory of so many bytes that was just handed out, and that nobody else knows of until this returns.
+        ask_for_large_pages(unsafe { slice::from_raw_parts_mut(memory.cast::<MaybeUninit<u8>>(), size) });
     }
     memory
 }
-
-#[cfg(target_os = "linux")]
-#[cold]
-fn advise(memory: *mut u8, size: usize) {
-    const PAGE: usize = 2 << 20;
-    let start = memory as usize;
-    let (first, last) = (start.next_multiple_of(PAGE), (start + size) / PAGE * PAGE);
-    if first < last {
-        // A wish: where it is not granted nothing but speed is lost.
-        // SAFETY: the range lies within memory that was just handed out, and the advice changes nothing of its contents.
-        unsafe { libc::madvise(first as *mut libc::c_void, last - first, libc::MADV_HUGEPAGE) };
-    }
-}
-
-#[cfg(not(target_os = "linux"))]
-fn advise(_: *mut u8, _: usize) {}
 
 #[cfg(test)]
 mod tests {

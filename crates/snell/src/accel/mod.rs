@@ -10,4 +10,4 @@ pub(crate) mod random;
 pub mod wide;
 
 pub use bvh::{BuildError, BuildOptions, BuildQuality, Bvh, Defect, Statistics};
-pub use wide::{Candidate, Hull, WideBvh, WideDefect};
+pub use wide::{Candidate, Hull, WideBvh, WideDefect, ask_for_large_pages};

@@ -1,6 +1,8 @@
 //! Memory for large trees: on pages of 2 MiB where Linux gives them, since a ray of a large tree touches a new page in
 //! nearly every node, and looking up the address then costs more than the node.
 
+use std::mem::MaybeUninit;
+
 /// From how many bytes on it is worth asking.
 const LARGE: usize = 8 << 20;
 
@@ -9,24 +11,31 @@ const LARGE: usize = 8 << 20;
 pub fn roomy<T>(capacity: usize) -> Vec<T> {
     let mut room = Vec::with_capacity(capacity);
     if capacity.saturating_mul(size_of::<T>()) >= LARGE {
-        advise(room.spare_capacity_mut());
+        ask_for_large_pages(room.spare_capacity_mut());
     }
     room
 }
 
-#[cfg(target_os = "linux")]
-fn advise<T>(memory: &mut [T]) {
-    const PAGE: usize = 2 << 20;
-    let start = memory.as_mut_ptr() as usize;
-    let (first, last) = (start.next_multiple_of(PAGE), (start + size_of_val(memory)) / PAGE * PAGE);
-    if first < last {
-        // SAFETY: the range lies within memory that is ours alone, and the advice changes nothing of its contents.
-        unsafe { libc::madvise(first as *mut libc::c_void, last - first, libc::MADV_HUGEPAGE) };
+/// Asks the system for pages of 2 MiB behind memory that is not used yet. A wish: where it is not granted, or there is nothing to grant,
+/// nothing but speed is lost.
+///
+/// ```
+/// let mut pixels: Vec<[f32; 3]> = Vec::with_capacity(1 << 20);
+/// snell::accel::ask_for_large_pages(pixels.spare_capacity_mut());
+/// ```
+#[cfg_attr(not(target_os = "linux"), expect(unused_variables, reason = "there is nobody to ask"))]
+pub fn ask_for_large_pages<T>(memory: &mut [MaybeUninit<T>]) {
+    #[cfg(target_os = "linux")]
+    {
+        const PAGE: usize = 2 << 20;
+        let start = memory.as_mut_ptr() as usize;
+        let (first, last) = (start.next_multiple_of(PAGE), (start + size_of_val(memory)) / PAGE * PAGE);
+        if first < last {
+            // SAFETY: the range lies within memory that is ours alone, and the advice changes nothing of its contents.
+            unsafe { libc::madvise(first as *mut libc::c_void, last - first, libc::MADV_HUGEPAGE) };
+        }
     }
 }
-
-#[cfg(not(target_os = "linux"))]
-fn advise<T>(_: &mut [T]) {}
 
 #[cfg(test)]
 mod tests {

@@ -31,6 +31,7 @@ mod validate;
 mod tests;
 
 pub use hulls::Hull;
+pub use memory::ask_for_large_pages;
 pub use primitives::{Candidate, WideBvh};
 pub use validate::WideDefect;
 
