@@ -136,8 +136,7 @@ impl<L: Lanes> LaneVector<L> {
     #[must_use]
     pub fn max_abs(self) -> L {
         let (x, y, z) = (self.x.abs(), self.y.abs(), self.z.abs());
-        let across = x.or_where_not(x.gt(y), y);
-        across.or_where_not(across.gt(z), z)
+        z.larger(y.larger(x))
     }
 
     /// `self` where a bit is set, `other` elsewhere.

@@ -226,6 +226,17 @@ impl Lanes for Eight512 {
             Self(_mm512_mul_pd(self.0, _mm512_castsi512_pd(_mm512_slli_epi64::<52>(field))))
         }
     }
+    // The instructions give their second operand where neither is larger, or one is NaN.
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        // SAFETY: as above.
+        unsafe { Self(_mm512_max_pd(other.0, self.0)) }
+    }
+    #[inline(always)]
+    fn smaller(self, other: Self) -> Self {
+        // SAFETY: as above.
+        unsafe { Self(_mm512_min_pd(other.0, self.0)) }
+    }
     #[inline(always)]
     fn append(self, end: End, [first, second]: [&mut [f64; WIDTH]; 2]) {
         // SAFETY: as above; the rows have eight places.
@@ -370,12 +381,10 @@ impl Lanes for Eight256 {
     fn or_where_not(self, bits: Bits, other: Self) -> Self {
         // SAFETY: as above.
         unsafe {
+            // Each lane's bit is shifted to where the blend looks for it, the sign.
             let all = _mm256_set1_epi64x(i64::from(bits.0));
-            let (low, high) = (_mm256_setr_epi64x(1, 2, 4, 8), _mm256_setr_epi64x(16, 32, 64, 128));
-            let (low_mask, high_mask) = (
-                _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(all, low), low)),
-                _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(all, high), high)),
-            );
+            let low_mask = _mm256_castsi256_pd(_mm256_sllv_epi64(all, _mm256_setr_epi64x(63, 62, 61, 60)));
+            let high_mask = _mm256_castsi256_pd(_mm256_sllv_epi64(all, _mm256_setr_epi64x(59, 58, 57, 56)));
             Self(_mm256_blendv_pd(other.0, self.0, low_mask), _mm256_blendv_pd(other.1, self.1, high_mask))
         }
     }
@@ -406,6 +415,17 @@ impl Lanes for Eight256 {
     fn times_power_of_two(self, power: Self) -> Self {
         // SAFETY: as above.
         unsafe { Self(_mm256_mul_pd(self.0, power_of_two(power.0)), _mm256_mul_pd(self.1, power_of_two(power.1))) }
+    }
+    // As with AVX-512.
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        // SAFETY: as above.
+        unsafe { Self(_mm256_max_pd(other.0, self.0), _mm256_max_pd(other.1, self.1)) }
+    }
+    #[inline(always)]
+    fn smaller(self, other: Self) -> Self {
+        // SAFETY: as above.
+        unsafe { Self(_mm256_min_pd(other.0, self.0), _mm256_min_pd(other.1, self.1)) }
     }
     #[inline(always)]
     fn append(self, end: End, [first, second]: [&mut [f64; WIDTH]; 2]) {
@@ -514,7 +534,10 @@ unsafe fn join(low: __m256d, high: __m256d) -> Bits {
 }
 
 macro_rules! floats {
-    ($type:ident, |$a:ident, $b:ident| $lt:expr, $le:expr, $is_zero:expr, $is_nan:expr, |$bits:ident| $blend:expr) => {
+    (
+        $type:ident,
+        |$a:ident, $b:ident| $lt:expr, $le:expr, $is_zero:expr, $is_nan:expr, |$larger:ident| $max:expr, |$bits:ident| $blend:expr
+    ) => {
         impl Floats for $type {
             #[inline(always)]
             fn splat(value: f32) -> Self {
@@ -559,6 +582,15 @@ macro_rules! floats {
                 let ($a, $b) = (self.0, other.0);
                 // SAFETY: as above.
                 unsafe { Self($blend) }
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                let ($a, $b) = (self.0, other.0);
+                // SAFETY: as above. The instruction gives its second operand where one is NaN.
+                unsafe {
+                    let $larger = _mm256_max_ps($b, $a);
+                    Self($max)
+                }
             }
         }
 
@@ -613,6 +645,7 @@ floats!(
     _mm256_cmp_ps_mask::<_CMP_LE_OQ>(a, b),
     _mm256_cmp_ps_mask::<_CMP_EQ_OQ>(a, _mm256_setzero_ps()),
     _mm256_cmp_ps_mask::<_CMP_UNORD_Q>(a, a),
+    |larger| _mm256_mask_blend_ps(_mm256_cmp_ps_mask::<_CMP_UNORD_Q>(a, a), larger, b),
     |bits| _mm256_mask_blend_ps(bits.0, b, a)
 );
 floats!(
@@ -621,10 +654,10 @@ floats!(
     _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b)),
     _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_EQ_OQ>(a, _mm256_setzero_ps())),
     _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_UNORD_Q>(a, a)),
+    |larger| _mm256_blendv_ps(larger, b, _mm256_cmp_ps::<_CMP_UNORD_Q>(a, a)),
     |bits| {
-        let lanes = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
         let all = _mm256_set1_epi32(i32::from(bits.0));
-        let mask = _mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_and_si256(all, lanes), lanes));
-        _mm256_blendv_ps(b, a, mask)
+        let mask = _mm256_sllv_epi32(all, _mm256_setr_epi32(31, 30, 29, 28, 27, 26, 25, 24));
+        _mm256_blendv_ps(b, a, _mm256_castsi256_ps(mask))
     }
 );

@@ -64,8 +64,8 @@ impl WideTree {
             let near = (high.or_where_not(back, low) - (from + slack)) * inverse;
             let far = (low.or_where_not(back, high) - (from - slack)) * inverse;
             // So written, NaN changes nothing.
-            start = near.or_where_not(near.gt(start), start);
-            leave = far.or_where_not(far.lt(leave), leave);
+            start = start.larger(near);
+            leave = leave.smaller(far);
         }
         (start, leave, inside)
     }
