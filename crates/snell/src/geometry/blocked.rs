@@ -7,12 +7,12 @@ use snell_math::Ray;
 use snell_math::lanes::{Bits, Lanes, WIDTH, Work};
 
 use super::lanes::keep_met;
-use super::packets::RayGroup;
+use super::packets::{RayGroup, are_worth_lanes};
 use super::space::{NONE, Primitive, Space};
 use super::{Geometry, Hit, LocalHit, LocalPlace, QueryScratch};
 use crate::accel::wide::{Group, PrimitiveFinder};
 use crate::shape::triangle_mesh::Sight;
-use crate::shape::{LaneRay, LaneSpheres, RayRow, Sphere};
+use crate::shape::{LaneRay, LaneSpheres, RayRow, Shape, Sphere};
 
 /// The instance of the world through which a prototype is seen: its number, and the material that it hands on.
 pub(super) type Outer = Option<(u32, u32)>;
@@ -151,6 +151,42 @@ impl<L: Lanes> PrimitiveFinder for BlockedFinder<'_, '_, '_, L> {
     }
 }
 
+/// The question which rays are blocked by a shape, in whose space they are; `keep` says by which numbers the places are kept where
+/// they meet it and it is transparent.
+struct BlockedByShape<'a, 's> {
+    shape: &'a Shape,
+    group: &'a RayGroup,
+    rays: Bits,
+    keep: Option<(u32, u32)>,
+    shadows: &'a mut Shadows<'s>,
+}
+
+impl Work for BlockedByShape<'_, '_> {
+    type Output = Bits;
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Bits {
+        let Self { shape, group, rays, keep, shadows } = self;
+        let distance = L::load(shadows.distance, 0);
+        let [near, far] = shape.passages(&group.lanes::<L>());
+        let Some((primitive, inner)) = keep else {
+            return (near.before(distance) | far.before(distance)) & rays;
+        };
+        for passage in [near, far] {
+            let met = passage.before(distance) & rays;
+            if met.any() {
+                let (mut t, mut part) = ([0.0; WIDTH], [0.0; WIDTH]);
+                passage.t.store(&mut t, 0);
+                passage.part.store(&mut part, 0);
+                for lane in met.lanes() {
+                    let place = LocalPlace::of_part(part[lane] as u32);
+                    shadows.hits.push((lane as u8, Hit { t: t[lane], primitive, inner, place }));
+                }
+            }
+        }
+        Bits::NONE
+    }
+}
+
 impl Geometry {
     /// Which rays are blocked by one primitive of a space, which may be any; what they meet of transparent ones is gathered. `sight` is
     /// what is known of them there, if anything.
@@ -222,6 +258,20 @@ impl Geometry {
                         ControlFlow::Continue(())
                     },
                 )
+            }
+            Primitive::Shape { shape, .. } if are_worth_lanes(&space.shapes[*shape as usize], rays) => {
+                let mut carried = None;
+                let (shape, group) =
+                    (&space.shapes[*shape as usize], group.in_space_of::<L>(space, primitive, &mut carried));
+                let attributes = &space.attributes[index as usize];
+                let (number, inner, inherited) = names_of(outer, index);
+                let is_transparent = || {
+                    let material = self.material_of(primitive, attributes, inherited, LocalPlace::of_part(0));
+                    self.transparent[material as usize]
+                };
+                let keep = !(shadows.any_blocks || attributes.is_opaque) && is_transparent();
+                let keep = keep.then_some((number, inner));
+                L::stage(BlockedByShape { shape, group, rays, keep, shadows })
             }
             _ => {
                 let mut blocked = Bits::NONE;

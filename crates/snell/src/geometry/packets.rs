@@ -1,6 +1,6 @@
 //! Questions of rays side by side to what stands in hierarchies, to instances and to meshes: through the trees together.
 //!
-//! What a ray meets is what it meets alone: spheres are tested in all lanes by the code for one, triangles by the same tests, and
+//! What a ray meets is what it meets alone: simple shapes are tested in all lanes by the code for one, triangles by the same tests, and
 //! everything else by one ray after the other. Of hits at the same distance the lowest primitive's wins, in whatever order they
 //! are found, so the way through the tree may be anybody's.
 
@@ -14,7 +14,7 @@ use super::space::{NONE, Primitive, Space};
 use super::{Geometry, InnerHit, LocalHit, LocalPlace, Placement, QueryScratch, TOUCHING, Touching};
 use crate::accel::wide::{Group, PrimitiveSeeker, widened_measure};
 use crate::shape::triangle_mesh::Sight;
-use crate::shape::{LaneRay, LaneSpheres, RayRow};
+use crate::shape::{LaneRay, LaneSpheres, Passage, RayRow, Shape};
 
 /// Rays side by side, in the space of what they are asked about.
 pub(super) struct RayGroup {
@@ -262,6 +262,48 @@ impl<L: Lanes> PrimitiveSeeker for NearestSeeker<'_, '_, '_, L> {
     }
 }
 
+/// From how many rays on a shape is met by all of them side by side.
+const SIDE_BY_SIDE: u32 = 3;
+
+/// Whether a shape is met side by side by so many rays.
+#[inline(always)]
+pub(super) fn are_worth_lanes(shape: &Shape, rays: Bits) -> bool {
+    rays.count() >= SIDE_BY_SIDE && shape.has_lanes()
+}
+
+/// The question for the nearest hits with a shape, in whose space the rays are.
+struct MeetShape<'a, 'h> {
+    shape: &'a Shape,
+    group: &'a RayGroup,
+    rays: Bits,
+    index: u32,
+    is_opaque: bool,
+    found: &'a mut Found<'h>,
+}
+
+impl Work for MeetShape<'_, '_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { shape, group, rays, index, is_opaque, found } = self;
+        let passages = shape.passages(&group.lanes::<L>());
+        let Passage { met, t, part } = Passage::first_before(passages, L::splat(f64::INFINITY));
+        let met = met & rays;
+        if met.is_empty() {
+            return;
+        }
+        let better = found.take_lanes(index, met, t, key_of(t, L::load(&group.along, 0), is_opaque));
+        if better.any() {
+            let mut parts = [0.0; WIDTH];
+            part.store(&mut parts, 0);
+            for lane in better.lanes() {
+                found.hits.place[lane] = LocalPlace::of_part(parts[lane] as u32);
+            }
+            found.complex |= better;
+        }
+    }
+}
+
 impl Geometry {
     /// The nearest hits of rays with one primitive of a space, which may be any; `sight` is what is known of them there, if anything.
     #[expect(clippy::too_many_arguments, reason = "it is asked from within loops that know all of these by themselves")]
@@ -312,6 +354,13 @@ impl Geometry {
                         found.take(lane, index, &Touching(group.along[lane]).candidate(hit.into(), is_opaque));
                     }
                 }
+            }
+            Primitive::Shape { shape, .. } if are_worth_lanes(&space.shapes[*shape as usize], rays) => {
+                let mut carried = None;
+                let (shape, group) =
+                    (&space.shapes[*shape as usize], group.in_space_of::<L>(space, primitive, &mut carried));
+                let is_opaque = space.attributes[index as usize].is_opaque;
+                L::stage(MeetShape { shape, group, rays, index, is_opaque, found });
             }
             _ => {
                 for lane in rays.lanes() {

@@ -3,11 +3,12 @@
 //! The slab method: Kay and Kajiya, "Ray Tracing Complex Scenes", SIGGRAPH 1986; Williams et al., "An Efficient and Robust
 //! Ray-Box Intersection Algorithm", JGT 10(1), 2005, for directions with zero components.
 
+use snell_math::lanes::Lanes;
 use snell_math::{Bounds3, Normal3, Point3, Ray, Transform, Vector3};
 
 use super::rounding::gamma;
-use super::span::Span;
-use super::{Crossing, ShapeHit, SurfacePoint};
+use super::span::{Passage, Span, ends};
+use super::{Crossing, LaneRay, ShapeHit, SurfacePoint};
 
 /// All points between two corners. Part `2 axis` is the face of smallest coordinate on that axis, `2 axis + 1` the
 /// opposite one.
@@ -28,32 +29,39 @@ impl Cuboid {
         (self.min, self.max)
     }
 
-    /// A ray within a face is inside at the smaller coordinate and outside at the larger: of two boxes that share a
-    /// face, exactly one has it.
+    /// Where lines enter and leave. A ray within a face is inside at the smaller coordinate and outside at the larger: of two boxes
+    /// that share a face, exactly one has it.
+    #[inline(always)]
+    pub(super) fn ends<L: Lanes>(&self, ray: &LaneRay<L>) -> [Passage<L>; 2] {
+        let (o, d) = (ray.origin, ray.direction);
+        let (zero, infinity) = (L::splat(0.0), L::splat(f64::INFINITY));
+        // A ray with NaN or without a direction compares false everywhere below, so it has to be stopped here.
+        let mut met = d.length_squared().gt(zero) & (o * zero).sum().same(zero);
+        let (mut enter, mut enter_part) = (-infinity, zero);
+        let (mut leave, mut leave_part) = (infinity, zero);
+        let axes = [(o.x, d.x), (o.y, d.y), (o.z, d.z)];
+        for (axis, (o, d)) in axes.into_iter().enumerate() {
+            let (min, max) = (L::splat(self.min[axis]), L::splat(self.max[axis]));
+            let (low_part, high_part) = (L::splat(2.0 * axis as f64), L::splat(2.0 * axis as f64 + 1.0));
+            let flat = d.same(zero);
+            if flat.any() {
+                met = met.without(flat.without(min.le(o) & o.lt(max)));
+            }
+            // Divided, not multiplied by a reciprocal that could be infinite: the quotient is never NaN but where `flat`.
+            let (low, high) = ((min - o) / d, (max - o) / d);
+            let up = d.gt(zero);
+            let (near, far) = (low.or_where_not(up, high), high.or_where_not(up, low));
+            let (near_part, far_part) = (low_part.or_where_not(up, high_part), high_part.or_where_not(up, low_part));
+            let (later, sooner) = (near.gt(enter).without(flat), far.lt(leave).without(flat));
+            (enter, enter_part) = (near.or_where_not(later, enter), near_part.or_where_not(later, enter_part));
+            (leave, leave_part) = (far.or_where_not(sooner, leave), far_part.or_where_not(sooner, leave_part));
+        }
+        ends(met, (enter, enter_part), (leave, leave_part))
+    }
+
     #[inline]
     fn span(&self, ray: &Ray) -> Option<Span> {
-        let (o, d) = (ray.origin, ray.direction);
-        // A ray with NaN or without a direction compares false everywhere below, so it has to be stopped here.
-        if !(d.length_squared() > 0.0 && o.is_finite()) {
-            return None;
-        }
-        let mut enter = ShapeHit { t: f64::NEG_INFINITY, part: 0 };
-        let mut leave = ShapeHit { t: f64::INFINITY, part: 0 };
-        for (axis, low_part) in [0, 2, 4].into_iter().enumerate() {
-            if d[axis] == 0.0 {
-                if !(self.min[axis] <= o[axis] && o[axis] < self.max[axis]) {
-                    return None;
-                }
-                continue;
-            }
-            // Divided, not multiplied by a reciprocal that could be infinite: the quotient is never NaN.
-            let low = ShapeHit { t: (self.min[axis] - o[axis]) / d[axis], part: low_part };
-            let high = ShapeHit { t: (self.max[axis] - o[axis]) / d[axis], part: low_part + 1 };
-            let (near, far) = if d[axis] > 0.0 { (low, high) } else { (high, low) };
-            enter = if near.t > enter.t { near } else { enter };
-            leave = if far.t < leave.t { far } else { leave };
-        }
-        Span::new(enter, leave)
+        Span::of_ends(self.ends::<f64>(&LaneRay::from(ray)))
     }
 
     /// See [`super::Shape::intersect`].

@@ -1,10 +1,12 @@
 //! The flat disk, with or without a hole. Glassner (ed.), An Introduction to Ray Tracing (1989), section 2.3.
 
+use snell_math::lanes::{LaneVector, Lanes};
 use snell_math::{Bounds3, Point3, Ray, Transform, Vector3};
 
 use super::frame::{Frame, turn};
-use super::plane::Plane;
-use super::{ShapeHit, SurfacePoint};
+use super::plane::{LanePlanes, Plane};
+use super::span::Passage;
+use super::{LaneRay, ShapeHit, SurfacePoint};
 
 /// The points of a plane between two distances from a centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,6 +35,16 @@ impl Disk {
         let squared = ((ray.origin - self.frame.origin) + ray.direction * hit.t).length_squared();
         let (inner, outer) = (self.inner_radius * self.inner_radius, self.radius * self.radius);
         (inner <= squared && squared <= outer).then_some(hit)
+    }
+
+    /// Where lines pass through it.
+    #[inline(always)]
+    pub(super) fn passages<L: Lanes>(&self, ray: &LaneRay<L>) -> [Passage<L>; 2] {
+        let t = LanePlanes::from(&self.plane).parameter(ray);
+        let center = LaneVector::splat(self.frame.origin.to_array());
+        let squared = ((ray.origin - center) + ray.direction * t).length_squared();
+        let (inner, outer) = (self.inner_radius * self.inner_radius, self.radius * self.radius);
+        Passage::one(L::splat(inner).le(squared) & squared.le(L::splat(outer)), t)
     }
 
     #[inline]

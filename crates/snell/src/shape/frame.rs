@@ -2,7 +2,10 @@
 
 use std::f64::consts::TAU;
 
+use snell_math::lanes::{LaneVector, Lanes};
 use snell_math::{Point3, Ray, Transform, Vector3, portable};
+
+use super::LaneRay;
 
 /// Orthonormal axes at an origin. They may be left-handed after a mirroring: the shapes that use them are symmetric.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +28,19 @@ impl Frame {
     #[inline]
     pub(super) fn ray(&self, ray: &Ray) -> (Vector3, Vector3) {
         (self.vector(ray.origin - self.origin), self.vector(ray.direction))
+    }
+
+    /// As [`Frame::ray`], side by side.
+    #[inline(always)]
+    pub(super) fn lanes<L: Lanes>(&self, ray: &LaneRay<L>) -> (LaneVector<L>, LaneVector<L>) {
+        let origin = LaneVector::splat(self.origin.to_array());
+        (self.lane_vectors(ray.origin - origin), self.lane_vectors(ray.direction))
+    }
+
+    #[inline(always)]
+    fn lane_vectors<L: Lanes>(&self, v: LaneVector<L>) -> LaneVector<L> {
+        let (x, y, z) = (self.x.to_array(), self.y.to_array(), self.z.to_array());
+        LaneVector { x: v.dot(LaneVector::splat(x)), y: v.dot(LaneVector::splat(y)), z: v.dot(LaneVector::splat(z)) }
     }
 
     /// The coordinates of the point at `t` on a ray.

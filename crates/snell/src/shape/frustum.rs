@@ -9,12 +9,13 @@
 //! number written as |R d − κ x|² − (x × d)², exact near the apex: whichever rounding can do less to. For a cylinder the
 //! second compares the line's distance from the axis with the radius.
 
+use snell_math::lanes::Lanes;
 use snell_math::{Bounds3, Normal3, Point3, Ray, Transform, Vector3};
 
 use super::frame::{Frame, turn};
 use super::rounding::gamma;
-use super::span::Span;
-use super::{Crossing, ShapeHit, SurfacePoint};
+use super::span::{Passage, Span, ends};
+use super::{Crossing, LaneRay, ShapeHit, SurfacePoint};
 
 /// The part number of the side.
 const SIDE: u32 = 0;
@@ -51,6 +52,12 @@ impl Frustum {
         Self { frame, length, thin: base_radius.min(top_radius), slope, normal_scale, capped, base_is_thick }
     }
 
+    /// The same without caps.
+    #[cfg(test)]
+    pub(super) const fn opened(&self) -> Self {
+        Self { capped: false, ..*self }
+    }
+
     /// Its frame, at the middle of the thinner end and with z to the thicker one, which is `length` away.
     pub(crate) fn frame_and_length(&self) -> (Frame, f64) {
         (self.frame, self.length)
@@ -73,72 +80,102 @@ impl Frustum {
         (if self.thin > 0.0 { thin } else { SIDE }, thick)
     }
 
-    /// The line inside the capped solid, as what the side and the slab between the ends have in common: an edge between
+    /// Where lines enter and leave the capped solid, as what the side and the slab between the ends have in common: an edge between
     /// side and cap cannot leak.
-    #[inline]
-    fn span(&self, ray: &Ray) -> Option<Span> {
-        let (o, d) = self.frame.ray(ray);
-        let (thin_cap, thick_cap) = self.caps();
+    #[inline(always)]
+    fn ends<L: Lanes>(&self, ray: &LaneRay<L>) -> [Passage<L>; 2] {
+        let (o, d) = self.frame.lanes(ray);
+        let (zero, infinity) = (L::splat(0.0), L::splat(f64::INFINITY));
+        let (length, thin, slope) = (L::splat(self.length), L::splat(self.thin), L::splat(self.slope));
+        let (side, caps) = (L::splat(f64::from(SIDE)), self.caps());
+        let (thin_cap, thick_cap) = (L::splat(f64::from(caps.0)), L::splat(f64::from(caps.1)));
         // The slab between the ends.
-        let (first_cap, last_cap) = if d.z() > 0.0 { (thin_cap, thick_cap) } else { (thick_cap, thin_cap) };
-        let (slab_enter, slab_leave) = if d.z() != 0.0 {
-            let (a, b) = (-o.z() / d.z(), (self.length - o.z()) / d.z());
-            if a < b { (a, b) } else { (b, a) }
-        } else if 0.0 <= o.z() && o.z() <= self.length {
-            (f64::NEG_INFINITY, f64::INFINITY)
-        } else {
-            return None;
-        };
-        // The origin moved to where the line is closest to the axis; a t² + 2 b t + c is negative inside.
-        let across = d.x() * d.x() + d.y() * d.y();
-        let closest = if across > 0.0 { -(o.x() * d.x() + o.y() * d.y()) / across } else { 0.0 };
-        let shift = closest.max(slab_enter).min(slab_leave);
-        let (x, y) = (o.x() + d.x() * shift, o.y() + d.y() * shift);
-        let radius = self.thin + self.slope * (o.z() + d.z() * shift);
-        // a t² + 2 b t + c is negative inside.
-        let kappa = self.slope * d.z();
-        let apart = x * x + y * y;
-        let (a, b, c) = (across - kappa * kappa, x * d.x() + y * d.y() - radius * kappa, apart - radius * radius);
-        let discriminant = {
-            let (wx, wy) = (radius * d.x() - kappa * x, radius * d.y() - kappa * y);
-            let cross = x * d.y() - y * d.x();
-            // What rounding can do to each form, in the same unit.
-            let b_terms = (x * d.x()).abs() + (y * d.y()).abs() + (radius * kappa).abs();
-            let (a_terms, c_terms) = (across + kappa * kappa, apart + radius * radius);
-            let plain_error = 2.0 * b.abs() * b_terms + a.abs() * c_terms + c.abs() * a_terms;
-            let geometric_error = 2.0 * (radius * radius * across + kappa * kappa * apart) + cross * cross;
-            if plain_error < geometric_error { b * b - a * c } else { wx * wx + wy * wy - cross * cross }
-        };
-        let (side_enter, side_leave) = if a > 0.0 {
-            if discriminant.is_nan() || discriminant <= 0.0 {
-                return None;
+        let up = d.z.gt(zero);
+        let (first_cap, last_cap) = (thin_cap.or_where_not(up, thick_cap), thick_cap.or_where_not(up, thin_cap));
+        let (a, b) = (-o.z / d.z, (length - o.z) / d.z);
+        let rising = a.lt(b);
+        let (mut slab_enter, mut slab_leave) = (a.or_where_not(rising, b), b.or_where_not(rising, a));
+        let mut met = L::all();
+        let level = d.z.same(zero);
+        if level.any() {
+            met = met.without(level.without(zero.le(o.z) & o.z.le(length)));
+            if met.is_empty() {
+                return [Passage::none(); 2];
             }
-            let q = -(b + discriminant.sqrt().copysign(b));
-            let (s, t) = (q / a, c / q);
-            if s < t { (s, t) } else { (t, s) }
-        } else if a < 0.0 {
-            // Steeper than the side: the line meets both nappes of the double cone, and this one where R grows.
-            let q = -(b + discriminant.max(0.0).sqrt().copysign(b));
-            let (s, t) = if q != 0.0 { (q / a, c / q) } else { (0.0, 0.0) };
-            if kappa > 0.0 { (s.max(t), f64::INFINITY) } else { (f64::NEG_INFINITY, s.min(t)) }
-        } else if b < 0.0 {
-            (-0.5 * c / b, f64::INFINITY)
-        } else if b > 0.0 {
-            (f64::NEG_INFINITY, -0.5 * c / b)
-        } else {
-            // Along the axis of a cylinder, or along the side itself, which is a touch.
-            let inside = across == 0.0 && kappa == 0.0 && d.z() != 0.0 && c < 0.0;
-            return if inside { self.ends(slab_enter, first_cap, slab_leave, last_cap) } else { None };
+            (slab_enter, slab_leave) =
+                ((-infinity).or_where_not(level, slab_enter), infinity.or_where_not(level, slab_leave));
+        }
+        // The origin moved to where the line is closest to the axis; a t² + 2 b t + c is negative inside.
+        let across = d.x * d.x + d.y * d.y;
+        let closest = (-(o.x * d.x + o.y * d.y) / across).or_where_not(across.gt(zero), zero);
+        let shift = closest.larger(slab_enter).smaller(slab_leave);
+        let (x, y) = (o.x + d.x * shift, o.y + d.y * shift);
+        let radius = thin + slope * (o.z + d.z * shift);
+        // a t² + 2 b t + c is negative inside.
+        let kappa = slope * d.z;
+        let apart = x * x + y * y;
+        let (a, b, c) = (across - kappa * kappa, x * d.x + y * d.y - radius * kappa, apart - radius * radius);
+        let discriminant = {
+            let (wx, wy) = (radius * d.x - kappa * x, radius * d.y - kappa * y);
+            let cross = x * d.y - y * d.x;
+            // What rounding can do to each form, in the same unit.
+            let b_terms = (x * d.x).abs() + (y * d.y).abs() + (radius * kappa).abs();
+            let (a_terms, c_terms) = (across + kappa * kappa, apart + radius * radius);
+            let two = L::splat(2.0);
+            let plain_error = two * b.abs() * b_terms + a.abs() * c_terms + c.abs() * a_terms;
+            let geometric_error = two * (radius * radius * across + kappa * kappa * apart) + cross * cross;
+            (b * b - a * c).or_where_not(plain_error.lt(geometric_error), wx * wx + wy * wy - cross * cross)
         };
+        let (usual, steep) = (a.gt(zero), a.lt(zero));
+        met = met.without(usual.without(discriminant.gt(zero)));
+        if met.is_empty() {
+            return [Passage::none(); 2];
+        }
+        let q = -(b + zero.larger(discriminant).sqrt().copysign(b));
+        let (s, t) = (q / a, c / q);
+        let sorted = s.lt(t);
+        let (mut side_enter, mut side_leave) = (s.or_where_not(sorted, t), t.or_where_not(sorted, s));
+        if met.without(usual).any() {
+            // Steeper than the side: the line meets both nappes of the double cone, and this one where R grows.
+            let some = !q.same(zero);
+            let (s, t) = (s.or_where_not(some, zero), t.or_where_not(some, zero));
+            let grows = kappa.gt(zero);
+            let steep_enter = s.larger(t).or_where_not(grows, -infinity);
+            let steep_leave = infinity.or_where_not(grows, s.smaller(t));
+            // Along the side there is one end.
+            let (before, behind) = (b.lt(zero), b.gt(zero));
+            let end = L::splat(-0.5) * c / b;
+            let flat_enter = end.or_where_not(before, -infinity);
+            let flat_leave = end.or_where_not(behind, infinity);
+            side_enter = side_enter.or_where_not(usual, steep_enter.or_where_not(steep, flat_enter));
+            side_leave = side_leave.or_where_not(usual, steep_leave.or_where_not(steep, flat_leave));
+            // Along the axis of a cylinder, or along the side itself, which is a touch.
+            let along = !(usual | steep | before | behind);
+            let inside = across.same(zero) & kappa.same(zero) & c.lt(zero) & !level;
+            met = met.without(along.without(inside));
+        }
         let (side_enter, side_leave) = (shift + side_enter, shift + side_leave);
-        let (enter, enter_part) = if side_enter > slab_enter { (side_enter, SIDE) } else { (slab_enter, first_cap) };
-        let (leave, leave_part) = if side_leave < slab_leave { (side_leave, SIDE) } else { (slab_leave, last_cap) };
-        self.ends(enter, enter_part, leave, leave_part)
+        let (by_side, out_by_side) = (side_enter.gt(slab_enter), side_leave.lt(slab_leave));
+        let enter = (side_enter.or_where_not(by_side, slab_enter), side.or_where_not(by_side, first_cap));
+        let leave = (side_leave.or_where_not(out_by_side, slab_leave), side.or_where_not(out_by_side, last_cap));
+        ends(met, enter, leave)
+    }
+
+    /// Where lines pass through the surface: open ones have no caps.
+    #[inline(always)]
+    pub(super) fn passages<L: Lanes>(&self, ray: &LaneRay<L>) -> [Passage<L>; 2] {
+        let [mut enter, mut leave] = self.ends(ray);
+        if !self.capped {
+            let side = L::splat(f64::from(SIDE));
+            enter.met = enter.met & enter.part.same(side);
+            leave.met = leave.met & leave.part.same(side);
+        }
+        [enter, leave]
     }
 
     #[inline]
-    fn ends(&self, enter: f64, enter_part: u32, leave: f64, leave_part: u32) -> Option<Span> {
-        Span::new(ShapeHit { t: enter, part: enter_part }, ShapeHit { t: leave, part: leave_part })
+    fn span(&self, ray: &Ray) -> Option<Span> {
+        Span::of_ends(self.ends::<f64>(&LaneRay::from(ray)))
     }
 
     /// See [`super::Shape::intersect`].

@@ -35,6 +35,7 @@ pub use frustum::Frustum;
 pub(crate) use plane::LanePlanes;
 pub use plane::Plane;
 pub use rectangle::Rectangle;
+pub(crate) use span::Passage;
 pub(crate) use sphere::LaneSpheres;
 pub use sphere::Sphere;
 pub use sphere_pairs::SpherePairs;
@@ -258,6 +259,27 @@ impl Shape {
     #[inline]
     pub fn intersect(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<ShapeHit> {
         each!(self, shape => shape.intersect(ray, t_min, t_max))
+    }
+
+    /// True where [`Shape::passages`] knows the shape.
+    #[inline]
+    pub(crate) const fn has_lanes(&self) -> bool {
+        !matches!(self, Self::Torus(_))
+    }
+
+    /// Where lines side by side pass through the surface, the nearer place first: what [`Shape::intersect`] finds for each alone.
+    /// Nowhere where it is not [known](Shape::has_lanes).
+    #[inline(always)]
+    pub(crate) fn passages<L: Lanes>(&self, ray: &LaneRay<L>) -> [Passage<L>; 2] {
+        match self {
+            Self::Sphere(shape) => LaneSpheres::from(shape).passages(ray),
+            Self::Plane(shape) => Passage::one(L::all(), LanePlanes::from(shape).parameter(ray)),
+            Self::Disk(shape) => shape.passages(ray),
+            Self::Rectangle(shape) => shape.passages(ray),
+            Self::Box(shape) => shape.ends(ray),
+            Self::Cylinder(shape) | Self::Cone(shape) => shape.passages(ray),
+            Self::Torus(_) => [Passage::none(); 2],
+        }
     }
 
     /// The surface at a hit of this ray.

@@ -98,7 +98,7 @@ impl<L: Lanes> From<&Plane> for LanePlanes<L> {
 impl<L: Lanes> LanePlanes<L> {
     /// Where rays meet the planes; infinite or NaN where they are parallel, which no comparison lets pass.
     #[inline(always)]
-    fn parameter(&self, ray: &LaneRay<L>) -> L {
+    pub(super) fn parameter(&self, ray: &LaneRay<L>) -> L {
         (self.point - ray.origin).dot(self.normal) / ray.direction.dot(self.normal)
     }
 

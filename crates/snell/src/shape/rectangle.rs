@@ -1,9 +1,11 @@
 //! The flat rectangle.
 
+use snell_math::lanes::{LaneVector, Lanes};
 use snell_math::{Bounds3, Point3, Ray, Transform, Vector3};
 
-use super::plane::Plane;
-use super::{ShapeHit, SurfacePoint};
+use super::plane::{LanePlanes, Plane};
+use super::span::Passage;
+use super::{LaneRay, ShapeHit, SurfacePoint};
 
 /// The points `corner + u edges[0] + v edges[1]`, (u, v) in [0, 1]², for perpendicular edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,6 +49,17 @@ impl Rectangle {
         let hit = self.plane.intersect(ray, t_min, t_max)?;
         let [u, v] = self.coordinates_of((ray.origin - self.corner) + ray.direction * hit.t);
         ((0.0..=1.0).contains(&u) && (0.0..=1.0).contains(&v)).then_some(hit)
+    }
+
+    /// Where lines pass through it.
+    #[inline(always)]
+    pub(super) fn passages<L: Lanes>(&self, ray: &LaneRay<L>) -> [Passage<L>; 2] {
+        let t = LanePlanes::from(&self.plane).parameter(ray);
+        let from_corner = (ray.origin - LaneVector::splat(self.corner.to_array())) + ray.direction * t;
+        let u = from_corner.dot(LaneVector::splat(self.coordinates[0].to_array()));
+        let v = from_corner.dot(LaneVector::splat(self.coordinates[1].to_array()));
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        Passage::one(zero.le(u) & u.le(one) & zero.le(v) & v.le(one), t)
     }
 
     #[inline]

@@ -1,5 +1,7 @@
 //! The part of a line inside a convex solid: from one hit to another.
 
+use snell_math::lanes::{Bits, Lanes};
+
 use super::{Crossing, ShapeHit};
 
 /// Where a line enters a convex solid and where it leaves it; the ends may be infinite.
@@ -10,12 +12,6 @@ pub(super) struct Span {
 }
 
 impl Span {
-    /// `None` where it has no length, or an end is NaN.
-    #[inline]
-    pub(super) fn new(enter: ShapeHit, leave: ShapeHit) -> Option<Self> {
-        (enter.t < leave.t).then_some(Self { enter, leave })
-    }
-
     /// The first end strictly between `t_min` and `t_max`.
     #[inline]
     pub(super) fn first_between(&self, t_min: f64, t_max: f64) -> Option<ShapeHit> {
@@ -28,5 +24,66 @@ impl Span {
     pub(super) fn push_to(&self, out: &mut Vec<Crossing>) {
         out.push(Crossing { t: self.enter.t, entering: true, part: self.enter.part });
         out.push(Crossing { t: self.leave.t, entering: false, part: self.leave.part });
+    }
+}
+
+/// Where lines side by side pass through a surface.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Passage<L> {
+    /// The lanes that do.
+    pub(crate) met: Bits,
+    /// As [`ShapeHit::t`].
+    pub(crate) t: L,
+    /// As [`ShapeHit::part`].
+    pub(crate) part: L,
+}
+
+impl<L: Lanes> Passage<L> {
+    /// Nowhere.
+    #[inline(always)]
+    pub(super) fn none() -> Self {
+        Self { met: Bits::NONE, t: L::splat(0.0), part: L::splat(0.0) }
+    }
+
+    /// Once, of a surface with one part.
+    #[inline(always)]
+    pub(super) fn one(met: Bits, t: L) -> [Self; 2] {
+        [Self { met, t, part: L::splat(0.0) }, Self::none()]
+    }
+
+    /// `self` where a bit is set, `other` elsewhere; of those that meet something or not, whichever.
+    #[inline(always)]
+    pub(super) fn or_where_not(self, bits: Bits, other: Self) -> Self {
+        let met = self.met & bits | other.met.without(bits);
+        Self { met, t: self.t.or_where_not(bits, other.t), part: self.part.or_where_not(bits, other.part) }
+    }
+
+    /// The lanes that pass with 0 < t < `t_max`.
+    #[inline(always)]
+    pub(crate) fn before(&self, t_max: L) -> Bits {
+        self.met & self.t.gt(L::splat(0.0)) & self.t.lt(t_max)
+    }
+
+    /// Of two passages, the nearer one first, the first with 0 < t < `t_max`.
+    #[inline(always)]
+    pub(crate) fn first_before([near, far]: [Self; 2], t_max: L) -> Self {
+        let (first, second) = (near.before(t_max), far.before(t_max));
+        Self { met: first | second, ..near.or_where_not(first, far) }
+    }
+}
+
+/// The lines that have a part inside, and both its ends: none where it has no length, or an end is NaN.
+#[inline(always)]
+pub(super) fn ends<L: Lanes>(met: Bits, enter: (L, L), leave: (L, L)) -> [Passage<L>; 2] {
+    let met = met & enter.0.lt(leave.0);
+    [Passage { met, t: enter.0, part: enter.1 }, Passage { met, t: leave.0, part: leave.1 }]
+}
+
+impl Span {
+    /// Of one line.
+    #[inline]
+    pub(super) fn of_ends([enter, leave]: [Passage<f64>; 2]) -> Option<Self> {
+        let hit = |end: Passage<f64>| ShapeHit { t: end.t, part: end.part as u32 };
+        enter.met.any().then(|| Self { enter: hit(enter), leave: hit(leave) })
     }
 }

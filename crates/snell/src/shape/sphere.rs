@@ -10,7 +10,7 @@ use snell_math::{Bounds3, Point3, Ray, Transform, portable};
 
 use super::frame::turn;
 use super::rounding::gamma;
-use super::span::Span;
+use super::span::{Passage, Span};
 use super::{Crossing, LaneRay, ShapeHit, SurfacePoint};
 
 /// How much further than its radius a line must be from a sphere's centre to miss it for sure, in squares and relative to the
@@ -169,6 +169,14 @@ impl<L: Lanes> LaneSpheres<L> {
         let zero = L::splat(0.0);
         let t = enter.or_where_not(enter.gt(zero), leave);
         (met & t.gt(zero) & t.lt(t_max), t)
+    }
+
+    /// Where lines pass through them.
+    #[inline(always)]
+    pub(super) fn passages(&self, ray: &LaneRay<L>) -> [Passage<L>; 2] {
+        let (met, [enter, leave]) = self.span(ray);
+        let part = L::splat(0.0);
+        [Passage { met, t: enter, part }, Passage { met, t: leave, part }]
     }
 
     /// As [`Sphere::hits_before`]: for each of both places, the lanes that pass there and where.

@@ -2,6 +2,7 @@
 
 mod degenerate;
 mod hits;
+mod lanes;
 mod spawning;
 mod surfaces;
 
