@@ -1,4 +1,4 @@
-//! Hits of rays side by side, worked out: spheres, planes and meshes of the world in lanes, everything else one by one. What comes
+//! Hits of rays side by side, worked out: shapes and meshes of the world in lanes, everything else one by one. What comes
 //! of it is what [`Geometry::interaction`] gives for each hit alone.
 
 use snell_math::lanes::{Bits, LaneVector, Lanes, WIDTH, Work};
@@ -44,7 +44,7 @@ impl Geometry {
             }
             return;
         }
-        let (mut spheres, mut planes, mut meshes) = (Bits::NONE, Bits::NONE, Bits::NONE);
+        let (mut spheres, mut planes, mut shapes, mut meshes) = (Bits::NONE, Bits::NONE, Bits::NONE, Bits::NONE);
         let (mut place, mut normal, mut radius) = ([[0.0; WIDTH]; 3], [[0.0; WIDTH]; 3], [1.0; WIDTH]);
         let mut unplaced = 0;
         if !self.meshes.is_empty() {
@@ -71,6 +71,11 @@ impl Geometry {
                     set_column(&mut place, at + lane, point.to_array());
                     set_column(&mut normal, at + lane, unit.to_array());
                 }
+                Primitive::Shape { shape, placement: NONE }
+                    if L::COUNT == WIDTH && self.world.shapes[*shape as usize].has_lanes() =>
+                {
+                    shapes |= Bits::lane(lane);
+                }
                 primitive => {
                     if L::COUNT == WIDTH
                         && let Some(material) = self.material_of_plain_mesh(primitive, index, hits.place[lane])
@@ -83,7 +88,10 @@ impl Geometry {
                 }
             }
         }
-        surfaces.unplaced = Bits(unplaced) & (spheres | planes);
+        surfaces.unplaced = Bits(unplaced) & (spheres | planes | shapes);
+        if shapes.any() {
+            L::stage(OfShapes { geometry: self, rays, hits, shapes, surfaces });
+        }
         if meshes.any() {
             let unusual = L::stage(OfMeshes { geometry: self, rays, hits, meshes, surfaces });
             // What asks for no place on an object may have any.
@@ -111,7 +119,7 @@ impl Geometry {
         (!object && !uv && !self.meshes[*mesh as usize].has_colors()).then_some(material)
     }
 
-    /// The material of a sphere or plane of the world, and the space of its object.
+    /// The material of a shape of the world, and the space of its object.
     #[inline(always)]
     fn plain_attributes(&self, index: u32) -> (u32, u32) {
         let Attributes { material, object_space, .. } = self.world.attributes[index as usize];
@@ -145,7 +153,12 @@ impl Geometry {
             uv: [0.0, 0.0],
         };
         let index = hits.primitive[lane];
-        let hit = Hit { t: hits.t[lane], primitive: index, inner: NONE, place: LocalPlace::of_part(0) };
+        let part = if let Primitive::Shape { .. } = &self.world.primitives[index as usize] {
+            hits.place[lane].part
+        } else {
+            0
+        };
+        let hit = Hit { t: hits.t[lane], primitive: index, inner: NONE, place: LocalPlace::of_part(part) };
         self.complete(&self.world, &hit, index, None, surface, None, surfaces.material[lane])
     }
 }
@@ -190,6 +203,41 @@ impl Work for OfMeshes<'_> {
             surfaces.put(0, done, point, geometric_normal, shading_normal, error);
         }
         unusual
+    }
+}
+
+/// The question for hits with shapes that stand in the world as they are, worked out; by itself for the same reason.
+struct OfShapes<'a> {
+    geometry: &'a Geometry,
+    rays: RayRow<'a>,
+    hits: &'a HitRows,
+    shapes: Bits,
+    surfaces: &'a mut SurfaceRows,
+}
+
+impl Work for OfShapes<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { geometry, rays, hits, shapes, surfaces } = self;
+        let (ray, t) = (rays.lanes::<L>(0), L::load(&hits.t, 0));
+        let mut parts = [0.0; WIDTH];
+        for lane in shapes.lanes() {
+            parts[lane] = f64::from(hits.place[lane].part);
+        }
+        let part = L::load(&parts, 0);
+        let mut rest = shapes;
+        while rest.any() {
+            let index = hits.primitive[rest.lowest() & (WIDTH - 1)];
+            let mut same = Bits::NONE;
+            for lane in rest.lanes() {
+                same |= Bits(u8::from(hits.primitive[lane] == index) << lane);
+            }
+            rest = rest.without(same);
+            let Primitive::Shape { shape, .. } = &geometry.world.primitives[index as usize] else { continue };
+            let (point, normal, error) = geometry.world.shapes[*shape as usize].surfaces(&ray, t, part);
+            surfaces.put(0, same, point, normal, normal, error);
+        }
     }
 }
 

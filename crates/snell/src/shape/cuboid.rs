@@ -3,8 +3,8 @@
 //! The slab method: Kay and Kajiya, "Ray Tracing Complex Scenes", SIGGRAPH 1986; Williams et al., "An Efficient and Robust
 //! Ray-Box Intersection Algorithm", JGT 10(1), 2005, for directions with zero components.
 
-use snell_math::lanes::Lanes;
-use snell_math::{Bounds3, Normal3, Point3, Ray, Transform, Vector3};
+use snell_math::lanes::{LaneVector, Lanes};
+use snell_math::{Bounds3, Point3, Ray, Transform, Vector3};
 
 use super::rounding::gamma;
 use super::span::{Passage, Span, ends};
@@ -76,18 +76,35 @@ impl Cuboid {
         }
     }
 
-    /// The point is put exactly onto its face. The error only has to be large enough that adding it changes the
-    /// coordinate of the face; the difference to the face is then exact in sign.
+    /// The points, the outward normals and the error of the points of hits at `t` with some parts.
+    ///
+    /// A point is put exactly onto its face. The error only has to be large enough that adding it changes the coordinate of the face;
+    /// the difference to the face is then exact in sign.
+    #[inline(always)]
+    pub(super) fn surfaces<L: Lanes>(&self, ray: &LaneRay<L>, t: L, part: L) -> (LaneVector<L>, LaneVector<L>, L) {
+        let raw = ray.origin + ray.direction * t;
+        let (x, normal_x) = self.coordinate(0, raw.x, part);
+        let (y, normal_y) = self.coordinate(1, raw.y, part);
+        let (z, normal_z) = self.coordinate(2, raw.z, part);
+        let error = L::splat(gamma(4) * (self.min.max_abs() + self.max.max_abs()));
+        (LaneVector { x, y, z }, LaneVector { x: normal_x, y: normal_y, z: normal_z }, error)
+    }
+
+    /// One coordinate of points, and of the normals there.
+    #[inline(always)]
+    fn coordinate<L: Lanes>(&self, axis: usize, raw: L, part: L) -> (L, L) {
+        let (min, max) = (L::splat(self.min[axis]), L::splat(self.max[axis]));
+        let low = part.same(L::splat(2.0 * axis as f64));
+        let high = part.same(L::splat(2.0 * axis as f64 + 1.0));
+        let point = min.or_where_not(low, max.or_where_not(high, raw.larger(min).smaller(max)));
+        (point, L::splat(-1.0).or_where_not(low, L::splat(1.0).or_where_not(high, L::splat(0.0))))
+    }
+
+    /// See [`Cuboid::surfaces`].
     #[inline]
     pub(super) fn surface_geometry(&self, ray: &Ray, hit: ShapeHit) -> SurfacePoint {
-        let (axis, high) = face(hit.part);
-        let raw = ray.at(hit.t);
-        let mut point = Point3(raw.0.max(self.min.0).min(self.max.0));
-        point.0[axis] = if high { self.max[axis] } else { self.min[axis] };
-        let mut normal = Normal3::new(0.0, 0.0, 0.0);
-        normal.0[axis] = if high { 1.0 } else { -1.0 };
-        let error = gamma(4) * (self.min.max_abs() + self.max.max_abs());
-        SurfacePoint::flat(point, normal, error)
+        let (point, normal, error) = self.surfaces::<f64>(&LaneRay::from(ray), hit.t, f64::from(hit.part));
+        SurfacePoint::flat(point.into(), normal.into(), error)
     }
 
     /// From the corner at the lower left of the face, seen from outside with y up (top and bottom: seen with −z and +z
@@ -119,14 +136,4 @@ impl Cuboid {
         let along = axes.iter().all(|&(v, axis)| map.vector(v) == v * stretch[axis] && stretch[axis] > 0.0);
         along.then(|| Self { min: map.point(self.min), max: map.point(self.max) })
     }
-}
-
-/// The axis of a face, and whether it is the one of larger coordinate.
-fn face(part: u32) -> (usize, bool) {
-    let axis = match part >> 1 {
-        0 => 0,
-        1 => 1,
-        _ => 2,
-    };
-    (axis, part & 1 == 1)
 }

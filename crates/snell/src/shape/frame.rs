@@ -37,6 +37,20 @@ impl Frame {
         (self.lane_vectors(ray.origin - origin), self.lane_vectors(ray.direction))
     }
 
+    /// As [`Frame::ray_point`], side by side.
+    #[inline(always)]
+    pub(super) fn lane_points<L: Lanes>(&self, ray: &LaneRay<L>, t: L) -> LaneVector<L> {
+        let origin = LaneVector::splat(self.origin.to_array());
+        self.lane_vectors((ray.origin - origin) + ray.direction * t)
+    }
+
+    /// As [`Frame::vector_out`], side by side.
+    #[inline(always)]
+    pub(super) fn lanes_out<L: Lanes>(&self, v: LaneVector<L>) -> LaneVector<L> {
+        let (x, y, z) = (self.x.to_array(), self.y.to_array(), self.z.to_array());
+        LaneVector::splat(x) * v.x + LaneVector::splat(y) * v.y + LaneVector::splat(z) * v.z
+    }
+
     #[inline(always)]
     fn lane_vectors<L: Lanes>(&self, v: LaneVector<L>) -> LaneVector<L> {
         let (x, y, z) = (self.x.to_array(), self.y.to_array(), self.z.to_array());

@@ -9,8 +9,8 @@
 //! number written as |R d − κ x|² − (x × d)², exact near the apex: whichever rounding can do less to. For a cylinder the
 //! second compares the line's distance from the axis with the radius.
 
-use snell_math::lanes::Lanes;
-use snell_math::{Bounds3, Normal3, Point3, Ray, Transform, Vector3};
+use snell_math::lanes::{LaneVector, Lanes};
+use snell_math::{Bounds3, Point3, Ray, Transform};
 
 use super::frame::{Frame, turn};
 use super::rounding::gamma;
@@ -195,28 +195,38 @@ impl Frustum {
         }
     }
 
+    /// The points, the outward normals and the error of the points of hits at `t` with some parts.
+    ///
     /// On a cap z is exact; on the side z or the radius, whichever the other depends on less, gives the other.
+    #[inline(always)]
+    pub(super) fn surfaces<L: Lanes>(&self, ray: &LaneRay<L>, t: L, part: L) -> (LaneVector<L>, LaneVector<L>, L) {
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        let (thin, slope, length) = (L::splat(self.thin), L::splat(self.slope), L::splat(self.length));
+        let p = self.frame.lane_points(ray, t);
+        let distance = (p.x * p.x + p.y * p.y).sqrt();
+        let z = if self.slope > 1.0 { (distance - thin) / slope } else { p.z };
+        let z = z.larger(zero).smaller(length);
+        // On the axis, at an apex, any direction is as good.
+        let apart = distance.gt(zero);
+        let (x, y) = ((p.x / distance).or_where_not(apart, one), (p.y / distance).or_where_not(apart, zero));
+        let radius = thin + slope * z;
+        let normal = LaneVector { x, y, z: -slope } * L::splat(self.normal_scale);
+        let side = part.same(L::splat(f64::from(SIDE)));
+        let below = part.same(L::splat(f64::from(self.caps().0)));
+        let axis = LaneVector::splat(self.frame.z.to_array());
+        let of_cap = LaneVector { x: p.x, y: p.y, z: zero.or_where_not(below, length) };
+        let local = LaneVector { x: x * radius, y: y * radius, z }.or_where_not(side, of_cap);
+        let normal = self.frame.lanes_out(normal).or_where_not(side, (-axis).or_where_not(below, axis));
+        let size = self.length + self.thin + self.slope * self.length;
+        let error = L::splat(gamma(64) * (self.frame.origin.max_abs() + size));
+        (LaneVector::splat(self.frame.origin.to_array()) + self.frame.lanes_out(local), normal, error)
+    }
+
+    /// See [`Frustum::surfaces`].
     #[inline]
     pub(super) fn surface_geometry(&self, ray: &Ray, hit: ShapeHit) -> SurfacePoint {
-        let p = self.frame.ray_point(ray, hit.t);
-        let distance = (p.x() * p.x() + p.y() * p.y()).sqrt();
-        let (thin_cap, _) = self.caps();
-        let (local, normal) = if hit.part == SIDE {
-            let z = if self.slope > 1.0 { (distance - self.thin) / self.slope } else { p.z() };
-            let z = z.max(0.0).min(self.length);
-            // On the axis, at an apex, any direction is as good.
-            let (x, y) = if distance > 0.0 { (p.x() / distance, p.y() / distance) } else { (1.0, 0.0) };
-            let radius = self.thin + self.slope * z;
-            let normal = Vector3::new(x, y, -self.slope) * self.normal_scale;
-            (Vector3::new(x * radius, y * radius, z), self.frame.vector_out(normal))
-        } else if hit.part == thin_cap {
-            (Vector3::new(p.x(), p.y(), 0.0), -self.frame.z)
-        } else {
-            (Vector3::new(p.x(), p.y(), self.length), self.frame.z)
-        };
-        let size = self.length + self.thin + self.slope * self.length;
-        let error = gamma(64) * (self.frame.origin.max_abs() + size);
-        SurfacePoint::flat(self.frame.point_out(local), Normal3::from(normal), error)
+        let (point, normal, error) = self.surfaces::<f64>(&LaneRay::from(ray), hit.t, f64::from(hit.part));
+        SurfacePoint::flat(point.into(), normal.into(), error)
     }
 
     pub(super) fn uv(&self, p: Point3) -> [f64; 2] {

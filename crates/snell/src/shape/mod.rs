@@ -282,6 +282,25 @@ impl Shape {
         }
     }
 
+    /// The points of hits at `t` with some parts, the outward normals there and the error of the points: as
+    /// [`Shape::surface_geometry`]. Of no use where the shape is not [known](Shape::has_lanes).
+    #[inline(always)]
+    pub(crate) fn surfaces<L: Lanes>(&self, ray: &LaneRay<L>, t: L, part: L) -> (LaneVector<L>, LaneVector<L>, L) {
+        match self {
+            Self::Sphere(shape) => LaneSpheres::from(shape).surface(ray, t),
+            Self::Plane(shape) => {
+                let planes = LanePlanes::from(shape);
+                let (point, error) = planes.surface(ray, t);
+                (point, planes.normal, error)
+            }
+            Self::Disk(shape) => shape.surfaces(ray, t),
+            Self::Rectangle(shape) => shape.surfaces(ray, t),
+            Self::Box(shape) => shape.surfaces(ray, t, part),
+            Self::Cylinder(shape) | Self::Cone(shape) => shape.surfaces(ray, t, part),
+            Self::Torus(_) => (ray.origin, ray.direction, t),
+        }
+    }
+
     /// The surface at a hit of this ray.
     pub fn surface(&self, ray: &Ray, hit: ShapeHit) -> SurfacePoint {
         let surface = self.surface_geometry(ray, hit);

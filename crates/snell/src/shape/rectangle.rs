@@ -62,6 +62,14 @@ impl Rectangle {
         Passage::one(zero.le(u) & u.le(one) & zero.le(v) & v.le(one), t)
     }
 
+    /// The points, the normals and the error of the points of hits at `t`.
+    #[inline(always)]
+    pub(super) fn surfaces<L: Lanes>(&self, ray: &LaneRay<L>, t: L) -> (LaneVector<L>, LaneVector<L>, L) {
+        let planes = LanePlanes::from(&self.plane);
+        let (point, error) = planes.surface(ray, t);
+        (point, planes.normal, error)
+    }
+
     #[inline]
     pub(super) fn surface_geometry(&self, ray: &Ray, hit: ShapeHit) -> SurfacePoint {
         self.plane.surface_geometry(ray, hit)

@@ -3,7 +3,7 @@
 use snell_math::lanes::{InstructionSet, Lanes, WIDTH, Work, dispatch};
 use snell_math::{Point3, Ray, Vector3};
 
-use super::super::{Passage, RayRow, Shape};
+use super::super::{Passage, RayRow, Shape, ShapeHit};
 use super::{Random, fixture, ray_at};
 
 /// The passages of a shape's surface with 0 < t < `t_max`: for each lane as (bits of t, part).
@@ -20,12 +20,7 @@ impl Work for Passages<'_> {
     type Output = Found;
     #[inline(always)]
     fn run<L: Lanes>(self) -> Found {
-        let (mut origin, mut direction) = ([[0.0; WIDTH]; 3], [[0.0; WIDTH]; 3]);
-        for (lane, ray) in self.rays.iter().enumerate() {
-            for axis in 0..3 {
-                (origin[axis][lane], direction[axis][lane]) = (ray.origin[axis], ray.direction[axis]);
-            }
-        }
+        let (origin, direction) = rows(self.rays);
         let mut found = Found::default();
         for at in (0..WIDTH).step_by(L::COUNT) {
             let ray = RayRow { origin: &origin, direction: &direction }.lanes::<L>(at);
@@ -48,6 +43,45 @@ impl Work for Passages<'_> {
         }
         found
     }
+}
+
+/// The surface at places that are known: for each lane the bits of the point, the normal and the error.
+struct Surfaces<'a> {
+    shape: &'a Shape,
+    rays: &'a [Ray; WIDTH],
+    hits: &'a [ShapeHit; WIDTH],
+}
+
+impl Work for Surfaces<'_> {
+    type Output = [[u64; 7]; WIDTH];
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Self::Output {
+        let (origin, direction) = rows(self.rays);
+        let (t, part) = (self.hits.map(|hit| hit.t), self.hits.map(|hit| f64::from(hit.part)));
+        let mut found = [[0; 7]; WIDTH];
+        for at in (0..WIDTH).step_by(L::COUNT) {
+            let ray = RayRow { origin: &origin, direction: &direction }.lanes::<L>(at);
+            let (point, normal, error) = self.shape.surfaces(&ray, L::load(&t, at), L::load(&part, at));
+            for (number, numbers) in
+                [point.x, point.y, point.z, normal.x, normal.y, normal.z, error].into_iter().enumerate()
+            {
+                let mut row = [0.0; WIDTH];
+                numbers.store(&mut row, at);
+                (at..at + L::COUNT).for_each(|lane| found[lane][number] = row[lane].to_bits());
+            }
+        }
+        found
+    }
+}
+
+fn rows(rays: &[Ray; WIDTH]) -> ([[f64; WIDTH]; 3], [[f64; WIDTH]; 3]) {
+    let (mut origin, mut direction) = ([[0.0; WIDTH]; 3], [[0.0; WIDTH]; 3]);
+    for (lane, ray) in rays.iter().enumerate() {
+        for axis in 0..3 {
+            (origin[axis][lane], direction[axis][lane]) = (ray.origin[axis], ray.direction[axis]);
+        }
+    }
+    (origin, direction)
 }
 
 /// What rays find alone, from one hit to the next.
@@ -114,4 +148,39 @@ fn shapes_are_met_side_by_side_as_alone() {
         }
     }
     assert!(met > 30_000 && noticed > 5_000, "{met} {noticed}");
+}
+
+#[test]
+fn surfaces_are_worked_out_side_by_side_as_alone() {
+    let mut random = Random(8);
+    let (mut compared, mut noticed) = (0, 0);
+    for i in 0..16_000_u64 {
+        let scale = [1.0, 1e-3, 1e6, 30.0][random.below(4) as usize];
+        let center = Point3::ORIGIN + random.vector_in_ball(5.0 * scale);
+        let fixture = fixture(&mut random, i % 8, center, scale);
+        let shape = &fixture.shape;
+        let rays: [Ray; WIDTH] = std::array::from_fn(|_| ray_at(&mut random, &fixture, 3.0 * scale));
+        let hits = rays.map(|ray| shape.intersect(&ray, 0.0, f64::INFINITY));
+        let met: Vec<usize> = (0..WIDTH).filter(|lane| hits[*lane].is_some()).collect();
+        if met.is_empty() || !shape.has_lanes() {
+            continue;
+        }
+        let hits = hits.map(|hit| hit.unwrap_or(ShapeHit { t: 1.0, part: 0 }));
+        for set in InstructionSet::available() {
+            let found = dispatch(set, Surfaces { shape, rays: &rays, hits: &hits });
+            for &lane in &met {
+                let alone = shape.surface_geometry(&rays[lane], hits[lane]);
+                let (point, normal) = (alone.point.to_array(), alone.geometric_normal.to_array());
+                let expected = [point, normal].concat().into_iter().chain([alone.error]).map(f64::to_bits);
+                assert!(expected.eq(found[lane]), "{i}, {set:?}: {shape:?} {:?} {:?}", rays[lane], hits[lane]);
+                compared += 1;
+            }
+        }
+        // The twin: a hit a little farther along its ray is another one.
+        let farther = hits.map(|hit| ShapeHit { t: 1.001 * hit.t, ..hit });
+        let [here, there] =
+            [&hits, &farther].map(|hits| dispatch(InstructionSet::best(), Surfaces { shape, rays: &rays, hits }));
+        noticed += met.iter().filter(|lane| here[**lane] != there[**lane]).count();
+    }
+    assert!(compared > 60_000 && noticed > 20_000, "{compared} {noticed}");
 }
