@@ -167,8 +167,8 @@ impl Frustum {
         let [mut enter, mut leave] = self.ends(ray);
         if !self.capped {
             let side = L::splat(f64::from(SIDE));
-            enter.met = enter.met & enter.part.same(side);
-            leave.met = leave.met & leave.part.same(side);
+            enter.met &= enter.part.same(side);
+            leave.met &= leave.part.same(side);
         }
         [enter, leave]
     }
