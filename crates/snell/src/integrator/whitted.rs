@@ -371,15 +371,14 @@ fn travel<O: Observer>(
     for lane in active.lanes() {
         let Some(medium) = medium_around(scene, rays.media[at + lane], out) else { continue };
         let distance = if met.has(lane) { hits.t[at + lane] } else { f64::INFINITY };
-        let task = rays.task(at + lane);
         if !medium.scattering.is_black() {
-            scattering::gather(scene, &task, medium, distance, out);
+            scattering::gather(scene, &rays.task(at + lane), medium, distance, out);
         }
         let transmittance = beer_lambert(medium.absorption + medium.scattering, distance);
         if out.is_watched() {
-            out.observer().travelled(task.id, transmittance);
+            out.observer().travelled(rays.notes[at + lane].id, transmittance);
         }
-        let left = task.throughput * transmittance;
+        let left = Rgb::from(column(&rays.throughput, at + lane)) * transmittance;
         set_column(&mut throughput, at + lane, left.to_array());
     }
     throughput
