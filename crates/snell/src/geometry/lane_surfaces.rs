@@ -153,6 +153,7 @@ impl Geometry {
             uv: [0.0, 0.0],
         };
         let index = hits.primitive[lane];
+        // Of balls and planes, which have one part, what stands in the row may be that of a hit farther away.
         let part = if let Primitive::Shape { .. } = &self.world.primitives[index as usize] {
             hits.place[lane].part
         } else {
@@ -182,11 +183,7 @@ impl Work for OfMeshes<'_> {
         let triangles = hits.place.map(|place| place.part);
         let (mut rest, mut unusual) = (meshes, Bits::NONE);
         while rest.any() {
-            let index = hits.primitive[rest.lowest() & (WIDTH - 1)];
-            let mut same = Bits::NONE;
-            for lane in rest.lanes() {
-                same |= Bits(u8::from(hits.primitive[lane] == index) << lane);
-            }
+            let (index, same) = hits.alike(rest);
             rest = rest.without(same);
             let primitive = &geometry.world.primitives[index as usize];
             let Primitive::Mesh { mesh, .. } = primitive else { continue };
@@ -228,11 +225,7 @@ impl Work for OfShapes<'_> {
         let part = L::load(&parts, 0);
         let mut rest = shapes;
         while rest.any() {
-            let index = hits.primitive[rest.lowest() & (WIDTH - 1)];
-            let mut same = Bits::NONE;
-            for lane in rest.lanes() {
-                same |= Bits(u8::from(hits.primitive[lane] == index) << lane);
-            }
+            let (index, same) = hits.alike(rest);
             rest = rest.without(same);
             let Primitive::Shape { shape, .. } = &geometry.world.primitives[index as usize] else { continue };
             let (point, normal, error) = geometry.world.shapes[*shape as usize].surfaces(&ray, t, part);

@@ -44,6 +44,17 @@ impl HitRows {
         Bits(met)
     }
 
+    /// Of some lanes, one at least, the primitive that the first has met, and all that have met the same.
+    #[inline(always)]
+    pub(super) fn alike(&self, lanes: Bits) -> (u32, Bits) {
+        let primitive = self.primitive[lanes.lowest() & (WIDTH - 1)];
+        let mut same = Bits::NONE;
+        for lane in lanes.lanes() {
+            same |= Bits(u8::from(self.primitive[lane] == primitive) << lane);
+        }
+        (primitive, same)
+    }
+
     /// The hit of one lane.
     #[inline]
     pub fn hit(&self, lane: usize) -> Option<Hit> {

@@ -31,10 +31,7 @@ impl Disk {
     /// See [`super::Shape::intersect`].
     #[inline]
     pub fn intersect(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<ShapeHit> {
-        let hit = self.plane.intersect(ray, t_min, t_max)?;
-        let squared = ((ray.origin - self.frame.origin) + ray.direction * hit.t).length_squared();
-        let (inner, outer) = (self.inner_radius * self.inner_radius, self.radius * self.radius);
-        (inner <= squared && squared <= outer).then_some(hit)
+        Passage::first_between(self.passages(&LaneRay::from(ray)), t_min, t_max)
     }
 
     /// Where lines pass through it.
@@ -50,9 +47,7 @@ impl Disk {
     /// The points, the normals and the error of the points of hits at `t`.
     #[inline(always)]
     pub(super) fn surfaces<L: Lanes>(&self, ray: &LaneRay<L>, t: L) -> (LaneVector<L>, LaneVector<L>, L) {
-        let planes = LanePlanes::from(&self.plane);
-        let (point, error) = planes.surface(ray, t);
-        (point, planes.normal, error)
+        self.plane.surfaces(ray, t)
     }
 
     #[inline]

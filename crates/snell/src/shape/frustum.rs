@@ -181,12 +181,7 @@ impl Frustum {
     /// See [`super::Shape::intersect`].
     #[inline]
     pub fn intersect(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<ShapeHit> {
-        let span = self.span(ray)?;
-        if self.capped {
-            return span.first_between(t_min, t_max);
-        }
-        let there = |hit: &ShapeHit| hit.part == SIDE && hit.t > t_min && hit.t < t_max;
-        [span.enter, span.leave].into_iter().find(there)
+        Passage::first_between(self.passages(&LaneRay::from(ray)), t_min, t_max)
     }
 
     pub(super) fn crossings(&self, ray: &Ray, out: &mut Vec<Crossing>) {

@@ -288,11 +288,7 @@ impl Shape {
     pub(crate) fn surfaces<L: Lanes>(&self, ray: &LaneRay<L>, t: L, part: L) -> (LaneVector<L>, LaneVector<L>, L) {
         match self {
             Self::Sphere(shape) => LaneSpheres::from(shape).surface(ray, t),
-            Self::Plane(shape) => {
-                let planes = LanePlanes::from(shape);
-                let (point, error) = planes.surface(ray, t);
-                (point, planes.normal, error)
-            }
+            Self::Plane(shape) => shape.surfaces(ray, t),
             Self::Disk(shape) => shape.surfaces(ray, t),
             Self::Rectangle(shape) => shape.surfaces(ray, t),
             Self::Box(shape) => shape.surfaces(ray, t, part),

@@ -52,6 +52,14 @@ impl Plane {
         SurfacePoint::flat(point.into(), Normal3::from(self.normal), error)
     }
 
+    /// The points, the normals and the error of the points of hits at `t`.
+    #[inline(always)]
+    pub(super) fn surfaces<L: Lanes>(&self, ray: &LaneRay<L>, t: L) -> (LaneVector<L>, LaneVector<L>, L) {
+        let planes = LanePlanes::from(self);
+        let (point, error) = planes.surface(ray, t);
+        (point, planes.normal, error)
+    }
+
     pub(super) fn uv(&self, p: Point3) -> [f64; 2] {
         let local = Frame::around(self.point, self.normal).point(p);
         [local.x(), local.y()]

@@ -46,9 +46,7 @@ impl Rectangle {
     /// See [`super::Shape::intersect`].
     #[inline]
     pub fn intersect(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<ShapeHit> {
-        let hit = self.plane.intersect(ray, t_min, t_max)?;
-        let [u, v] = self.coordinates_of((ray.origin - self.corner) + ray.direction * hit.t);
-        ((0.0..=1.0).contains(&u) && (0.0..=1.0).contains(&v)).then_some(hit)
+        Passage::first_between(self.passages(&LaneRay::from(ray)), t_min, t_max)
     }
 
     /// Where lines pass through it.
@@ -65,9 +63,7 @@ impl Rectangle {
     /// The points, the normals and the error of the points of hits at `t`.
     #[inline(always)]
     pub(super) fn surfaces<L: Lanes>(&self, ray: &LaneRay<L>, t: L) -> (LaneVector<L>, LaneVector<L>, L) {
-        let planes = LanePlanes::from(&self.plane);
-        let (point, error) = planes.surface(ray, t);
-        (point, planes.normal, error)
+        self.plane.surfaces(ray, t)
     }
 
     #[inline]

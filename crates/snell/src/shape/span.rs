@@ -79,11 +79,26 @@ pub(super) fn ends<L: Lanes>(met: Bits, enter: (L, L), leave: (L, L)) -> [Passag
     [Passage { met, t: enter.0, part: enter.1 }, Passage { met, t: leave.0, part: leave.1 }]
 }
 
+impl Passage<f64> {
+    /// Of two passages of one line, the nearer one first, the first strictly between `t_min` and `t_max`.
+    #[inline]
+    pub(super) fn first_between(passages: [Self; 2], t_min: f64, t_max: f64) -> Option<ShapeHit> {
+        let is_there = |passage: &Self| passage.met.any() && passage.t > t_min && passage.t < t_max;
+        passages.into_iter().find(is_there).map(ShapeHit::from)
+    }
+}
+
+impl From<Passage<f64>> for ShapeHit {
+    #[inline]
+    fn from(passage: Passage<f64>) -> Self {
+        Self { t: passage.t, part: passage.part as u32 }
+    }
+}
+
 impl Span {
     /// Of one line.
     #[inline]
     pub(super) fn of_ends([enter, leave]: [Passage<f64>; 2]) -> Option<Self> {
-        let hit = |end: Passage<f64>| ShapeHit { t: end.t, part: end.part as u32 };
-        enter.met.any().then(|| Self { enter: hit(enter), leave: hit(leave) })
+        enter.met.any().then(|| Self { enter: enter.into(), leave: leave.into() })
     }
 }
