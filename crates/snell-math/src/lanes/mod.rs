@@ -50,7 +50,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 pub use bits::Bits;
 pub use end::End;
-pub use power::power_to_f32;
+pub use power::{exponential_to_f32, power_to_f32};
 pub use vector::{LaneColor, LaneVector};
 
 /// How many numbers stand in one row of memory: the most lanes there are.

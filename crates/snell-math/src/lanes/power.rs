@@ -1,9 +1,10 @@
-//! Powers side by side, as exact as an `f32` needs: the brightness of highlights.
+//! Powers side by side, as exact as an `f32` needs: the brightness of highlights, and what absorption leaves of light.
 //!
 //! `x^y = e^(y ln x)`, each function by its series on a small interval: `ln m = 2 artanh((m − 1) / (m + 1))` for m from √½ to √2, e^r for
 //! |r| up to ½ ln 2. The result is within a relative 2⁻⁴² of the true one while `y ln x` is above [`SMALLEST`]. Where both ends of
 //! that interval round to the same `f32`, so does what [`portable::pow`] gives, which is nearer still to the true one; elsewhere,
-//! once in some hundred thousand times, that function is asked itself. So the bits are its bits on every machine.
+//! once in some hundred thousand times, that function is asked itself. So the bits are its bits on every machine. Powers of e alone are
+//! had the same way, with those of [`portable::exp`].
 
 use std::f64::consts::{LN_2, LOG2_E, SQRT_2};
 
@@ -34,25 +35,51 @@ const LN_2_LOW: f64 = (LN_2 - LN_2_HIGH) + 2.319_046_813_846_299_6e-17;
 pub fn power_to_f32<L: Lanes>(base: L, exponent: f64, asked: Bits) -> L::Floats {
     let logarithm = natural_logarithm(base) * L::splat(exponent);
     let power = exponential(logarithm);
-    let low = (power * L::splat(1.0 - ERROR)).to_floats();
-    let high = (power * L::splat(1.0 + ERROR)).to_floats();
+    let (power, decided) = rounded::<L>(power);
     let in_range = base.ge(L::splat(f64::MIN_POSITIVE)) & logarithm.ge(L::splat(SMALLEST));
-    let known = in_range.without(low.lt(high));
+    let known = in_range & decided;
     let zero = L::Floats::splat(0.0);
-    let power = low.or_where_not(asked & known, zero);
+    let power = power.or_where_not(asked & known, zero);
     let rest = asked.without(known);
-    if rest.is_empty() { power } else { one_by_one::<L>(base, exponent, rest, power) }
+    if rest.is_empty() { power } else { one_by_one::<L>(base, rest, power, |base| portable::pow(base, exponent)) }
 }
 
-/// As above, those lanes that the series does not decide.
+/// e to the power of numbers that are not above 0, rounded to `f32`, in the lanes that are asked for; 0 in the others. The bits are those of
+/// `portable::exp(number) as f32`.
+///
+/// ```
+/// use snell_math::lanes::{Bits, exponential_to_f32};
+/// use snell_math::portable::exp;
+///
+/// assert_eq!(exponential_to_f32(-0.7, Bits::first(1)), exp(-0.7) as f32);
+/// ```
+#[inline(always)]
+pub fn exponential_to_f32<L: Lanes>(number: L, asked: Bits) -> L::Floats {
+    // What is below the smallest is taken for it: both are 0 as an `f32`.
+    let (power, decided) = rounded::<L>(exponential(number));
+    let known = decided & number.le(L::splat(0.0));
+    let power = power.or_where_not(asked & known, L::Floats::splat(0.0));
+    let rest = asked.without(known);
+    if rest.is_empty() { power } else { one_by_one::<L>(number, rest, power, portable::exp) }
+}
+
+/// Powers that err by [`ERROR`], rounded to `f32`, and the lanes where the true ones round to the same.
+#[inline(always)]
+fn rounded<L: Lanes>(power: L) -> (L::Floats, Bits) {
+    let low = (power * L::splat(1.0 - ERROR)).to_floats();
+    let high = (power * L::splat(1.0 + ERROR)).to_floats();
+    (low, !low.lt(high))
+}
+
+/// Those lanes that the series does not decide.
 #[cold]
 #[inline(never)]
-fn one_by_one<L: Lanes>(base: L, exponent: f64, lanes: Bits, others: L::Floats) -> L::Floats {
-    let (mut bases, mut powers) = ([0.0; WIDTH], [0.0; WIDTH]);
-    base.store(&mut bases, 0);
+fn one_by_one<L: Lanes>(numbers: L, lanes: Bits, others: L::Floats, power: impl Fn(f64) -> f64) -> L::Floats {
+    let (mut row, mut powers) = ([0.0; WIDTH], [0.0; WIDTH]);
+    numbers.store(&mut row, 0);
     others.store(&mut powers, 0);
     for lane in lanes.lanes() {
-        powers[lane] = portable::pow(bases[lane], exponent) as f32;
+        powers[lane] = power(row[lane]) as f32;
     }
     L::Floats::load(&powers, 0)
 }
@@ -114,6 +141,21 @@ mod tests {
         }
     }
 
+    struct Exponentials<'a>(&'a [f64; WIDTH], Bits);
+
+    impl Work for Exponentials<'_> {
+        type Output = [f32; WIDTH];
+        #[inline(always)]
+        fn run<L: Lanes>(self) -> [f32; WIDTH] {
+            let mut powers = [0.0; WIDTH];
+            for at in (0..WIDTH).step_by(L::COUNT) {
+                let asked = Bits(self.1.0 >> at) & L::all();
+                exponential_to_f32(L::load(self.0, at), asked).store(&mut powers, at);
+            }
+            powers
+        }
+    }
+
     fn base() -> impl Strategy<Value = f64> {
         prop_oneof![
             0.0..=1.0f64,
@@ -127,6 +169,12 @@ mod tests {
     fn exponent() -> impl Strategy<Value = f64> {
         let powers = vec![0.0, 1.0, 2.0, 0.5, 10.0, 60.0, 1e6, 1e300];
         prop_oneof![0.0..2.0f64, 0.0..1e3f64, 0.0..1e9f64, prop::sample::select(powers)]
+    }
+
+    fn number() -> impl Strategy<Value = f64> {
+        // Where `f32` has its smallest numbers, and where it has none.
+        let special = vec![0.0, -0.0, -5e-324, SMALLEST, -200.1, -1e300, f64::NEG_INFINITY, f64::NAN, 0.5, 100.0];
+        prop_oneof![-1.0..0.0f64, -20.0..0.0f64, -110.0..-80.0f64, -250.0..0.0f64, prop::sample::select(special)]
     }
 
     fn same(a: f32, b: f32) -> bool {
@@ -147,6 +195,29 @@ mod tests {
                     let expected = if Bits(asked).has(lane) { expected } else { 0.0 };
                     prop_assert!(same(powers[lane], expected), "{set:?}: {}^{exponent}: {}", bases[lane], powers[lane]);
                 }
+            }
+        }
+
+        #[test]
+        fn exponentials_are_those_of_one_at_a_time(
+            numbers in prop::collection::vec(number(), WIDTH), asked in any::<u8>(),
+        ) {
+            let numbers: [f64; WIDTH] = std::array::from_fn(|i| numbers[i]);
+            for set in InstructionSet::available() {
+                let powers = dispatch(set, Exponentials(&numbers, Bits(asked)));
+                for lane in 0..WIDTH {
+                    let expected = portable::exp(numbers[lane]) as f32;
+                    let expected = if Bits(asked).has(lane) { expected } else { 0.0 };
+                    prop_assert!(same(powers[lane], expected), "{set:?}: e^{}: {}", numbers[lane], powers[lane]);
+                }
+            }
+        }
+
+        #[test]
+        fn the_series_of_the_exponential_is_as_exact_as_is_said(number in number()) {
+            if (SMALLEST..=0.0).contains(&number) {
+                let (exact, series) = (portable::exp(number), exponential(number));
+                prop_assert!((series - exact).abs() <= 0.5 * ERROR * exact, "e^{number}: {series}, {exact}");
             }
         }
 

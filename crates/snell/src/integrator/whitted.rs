@@ -21,7 +21,7 @@ use crate::interaction::{LaneSurface, SurfaceRows};
 use crate::light::Light;
 use crate::material::{LaneBsdf, Material};
 use crate::observe::{BoundaryCrossing, Observer};
-use crate::optics::{beer_lambert, fresnel_dielectric_lanes, reflect_lanes, refract_lanes};
+use crate::optics::{Absorb, beer_lambert, fresnel_dielectric_lanes, reflect_lanes, refract_lanes};
 use crate::task::{Band, Crossing, Inside, MediumStack, RayKind, RayRows, RayTask, Term, column, set_column};
 use crate::texture::{Footprint, LaneCoordinates, SeenAtOnce, ViewProjection};
 
@@ -112,7 +112,7 @@ impl Integrator for Whitted {
         let throughput = if active.lanes().all(|lane| rays.media[at + lane] == MediumStack::EMPTY) {
             &rays.throughput
         } else {
-            weakened = travel(scene, rays, at, active, met, hits, out);
+            weakened = travel::<L, O>(scene, rays, at, active, met, hits, out);
             &weakened
         };
         let rays = ShadedRays { rows: rays, at, throughput };
@@ -358,7 +358,7 @@ impl Whitted {
 /// What the bodies that rays travel in do to them on the way to what they meet: scatters over that stretch, and gives what
 /// absorption leaves of what they carry.
 #[inline(never)]
-fn travel<O: Observer>(
+fn travel<L: Lanes, O: Observer>(
     scene: &CompiledScene,
     rays: &RayRows,
     at: usize,
@@ -367,20 +367,23 @@ fn travel<O: Observer>(
     hits: &HitRows,
     out: &mut Sink<'_, O>,
 ) -> [[f32; WIDTH]; 3] {
-    let mut throughput = rays.throughput;
+    let (mut coefficients, mut distances) = ([[0.0; WIDTH]; 3], [f64::INFINITY; WIDTH]);
     for lane in active.lanes() {
         let Some(medium) = medium_around(scene, rays.media[at + lane], out) else { continue };
-        let distance = if met.has(lane) { hits.t[at + lane] } else { f64::INFINITY };
+        if met.has(lane) {
+            distances[at + lane] = hits.t[at + lane];
+        }
+        let (distance, extinction) = (distances[at + lane], medium.absorption + medium.scattering);
         if !medium.scattering.is_black() {
             scattering::gather(scene, &rays.task(at + lane), medium, distance, out);
         }
-        let transmittance = beer_lambert(medium.absorption + medium.scattering, distance);
         if out.is_watched() {
-            out.observer().travelled(rays.notes[at + lane].id, transmittance);
+            out.observer().travelled(rays.notes[at + lane].id, beer_lambert(extinction, distance));
         }
-        let left = Rgb::from(column(&rays.throughput, at + lane)) * transmittance;
-        set_column(&mut throughput, at + lane, left.to_array());
+        set_column(&mut coefficients, at + lane, extinction.to_array());
     }
+    let mut throughput = rays.throughput;
+    L::stage(Absorb { coefficients: &coefficients, distances: &distances, light: &mut throughput, at });
     throughput
 }
 

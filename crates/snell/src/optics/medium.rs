@@ -3,6 +3,7 @@
 //! Follows: Beer and Lambert's law. Henyey and Greenstein's phase function is its own sampling density and stands beside the
 //! routine that samples it, in `snell_math::warp`. Coefficients are per unit of length of the space in which distances are measured (world units).
 
+use snell_math::lanes::{Floats, LaneColor, Lanes, WIDTH, Work, exponential_to_f32};
 pub use snell_math::warp::henyey_greenstein_density as henyey_greenstein;
 use snell_math::{Rgb, portable};
 
@@ -26,4 +27,41 @@ pub fn beer_lambert(coefficient: Rgb, distance: f64) -> Rgb {
         // False for NaN too: 0 · ∞ is no absorption.
         if depth > 0.0 { portable::exp(-depth) as f32 } else { 1.0 }
     })
+}
+
+/// As [`beer_lambert`], in each lane.
+#[inline(always)]
+fn beer_lambert_lanes<L: Lanes>(coefficient: LaneColor<L::Floats>, distance: L) -> LaneColor<L::Floats> {
+    let LaneColor { r, g, b } = coefficient;
+    LaneColor { r: left_of::<L>(r, distance), g: left_of::<L>(g, distance), b: left_of::<L>(b, distance) }
+}
+
+/// The same of one channel.
+#[inline(always)]
+fn left_of<L: Lanes>(coefficient: L::Floats, distance: L) -> L::Floats {
+    let depth = L::from_floats(coefficient) * distance;
+    // As above, false for NaN too.
+    let absorbed = depth.gt(L::splat(0.0));
+    exponential_to_f32(-depth, absorbed).or_where_not(absorbed, L::Floats::splat(1.0))
+}
+
+/// Light on its ways through bodies, side by side: what is left of it takes its place. Work of its own, since few rays need it.
+pub(crate) struct Absorb<'a> {
+    /// The coefficients of what each ray travels in; 0 where light passes unchanged.
+    pub coefficients: &'a [[f32; WIDTH]; 3],
+    /// How far each travels.
+    pub distances: &'a [f64; WIDTH],
+    /// The light, from this place on.
+    pub light: &'a mut [[f32; WIDTH]; 3],
+    pub at: usize,
+}
+
+impl Work for Absorb<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { coefficients, distances, light, at } = self;
+        let left = beer_lambert_lanes(LaneColor::load(coefficients, at), L::load(distances, at));
+        (LaneColor::<L::Floats>::load(light, at) * left).store(light, at);
+    }
 }

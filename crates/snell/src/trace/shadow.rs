@@ -13,7 +13,7 @@ use crate::compile::CompiledScene;
 use crate::geometry::{Blockers, Geometry, Hit, HitRows, QueryScratch, RayRow};
 use crate::interaction::{LaneSurface, SurfaceRows, Surroundings};
 use crate::observe::{Observer, ShadowStep};
-use crate::optics::{self, fresnel_dielectric_lanes};
+use crate::optics::{Absorb, beer_lambert, fresnel_dielectric_lanes};
 use crate::statistics::Statistics;
 use crate::task::{Inside, MediumStack, MediumStacks, QuestionRows, SampleSums, column, set_column};
 
@@ -178,7 +178,7 @@ impl Context<'_> {
     fn absorption(&self, rows: &QuestionRows, place: usize, medium: Option<Inside>, distance: f64) -> Rgb {
         let body = medium.and_then(|inside| self.scene.materials[inside.material as usize].body.as_ref());
         match body.filter(|body| !body.medium.is_clear()) {
-            Some(body) => extinction(&body.medium, distance, rows.notes[place].extinction_scale),
+            Some(body) => beer_lambert(extinction(&body.medium, rows.notes[place].extinction_scale), distance),
             None => Rgb::WHITE,
         }
     }
@@ -284,21 +284,30 @@ impl Context<'_> {
     /// Each of some rays travels up to a distance in what it is in.
     #[inline(always)]
     fn travel<L: Lanes>(&self, rows: &QuestionRows, at: usize, lanes: Bits, to: &[f64; WIDTH], way: &mut Way<L>) {
+        let (mut coefficients, mut distances, mut is_clear) = ([[0.0; WIDTH]; 3], [0.0; WIDTH], true);
         for lane in lanes.lanes() {
             if let Some(inside) = self.media.current(way.media[lane])
                 && let Some(body) = &self.scene.materials[inside.material as usize].body
                 && !body.medium.is_clear()
             {
-                let distance = to[at + lane] - way.from[lane];
-                let left = extinction(&body.medium, distance, rows.notes[at + lane].extinction_scale);
-                way.share = (way.share * LaneColor::splat(left)).or_where_not(Bits::lane(lane), way.share);
+                is_clear = false;
+                distances[lane] = to[at + lane] - way.from[lane];
+                let coefficient = extinction(&body.medium, rows.notes[at + lane].extinction_scale);
+                set_column(&mut coefficients, lane, coefficient.to_array());
             }
         }
+        if is_clear {
+            return;
+        }
+        let mut light = [[0.0; WIDTH]; 3];
+        way.share.store(&mut light, 0);
+        L::stage(Absorb { coefficients: &coefficients, distances: &distances, light: &mut light, at: 0 });
+        way.share = LaneColor::load(&light, 0);
     }
 }
 
-/// What is left after a stretch inside a body.
-fn extinction(medium: &Medium, distance: f64, scattering_scale: f32) -> Rgb {
+/// How much of light is lost per length inside a body.
+fn extinction(medium: &Medium, scattering_scale: f32) -> Rgb {
     let scale = if medium.scattering.is_black() { 1.0 } else { scattering_scale };
-    optics::beer_lambert((medium.absorption + medium.scattering) * scale, distance)
+    (medium.absorption + medium.scattering) * scale
 }
