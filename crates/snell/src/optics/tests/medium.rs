@@ -3,10 +3,11 @@
 use std::f64::consts::PI;
 
 use proptest::prelude::*;
+use snell_math::lanes::{InstructionSet, Lanes, WIDTH, Work, dispatch};
 use snell_math::{Rgb, portable};
 
 use super::config;
-use crate::optics::{beer_lambert, henyey_greenstein};
+use crate::optics::{Absorb, beer_lambert, henyey_greenstein};
 
 /// ∫ f(cos) dω over the sphere, by Gauss's three-point rule in many pieces.
 fn over_sphere(f: impl Fn(f64) -> f64) -> f64 {
@@ -53,6 +54,51 @@ fn a_clear_channel_passes_exactly_everything() {
     assert_eq!(beer_lambert(Rgb::gray(3.0), 0.0), Rgb::WHITE);
     assert_eq!(beer_lambert(Rgb::gray(f32::MAX), f64::MAX), Rgb::BLACK);
     assert_eq!(beer_lambert(Rgb::gray(1.0), -1.0), Rgb::WHITE);
+}
+
+/// Eight rays of which each travels in a body of its own.
+struct Bodies {
+    coefficients: [Rgb; WIDTH],
+    distances: [f64; WIDTH],
+}
+
+impl Work for &Bodies {
+    type Output = [[u32; 3]; WIDTH];
+    /// What is left of white light.
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Self::Output {
+        let coefficients = &[0, 1, 2].map(|channel| self.coefficients.map(|color| color.to_array()[channel]));
+        let light = &mut [[1.0; WIDTH]; 3];
+        for at in (0..WIDTH).step_by(L::COUNT) {
+            L::stage(Absorb { coefficients, distances: &self.distances, light, at });
+        }
+        std::array::from_fn(|lane| light.map(|row| row[lane].to_bits()))
+    }
+}
+
+impl Bodies {
+    fn one_by_one(&self) -> [[u32; 3]; WIDTH] {
+        let left = |lane: usize| beer_lambert(self.coefficients[lane], self.distances[lane]);
+        std::array::from_fn(|lane| left(lane).to_array().map(f32::to_bits))
+    }
+}
+
+#[test]
+fn side_by_side_as_much_is_absorbed_as_of_one_ray() {
+    let special = [0.0, 1e-30, 0.3, 1.0, 40.0, 1e30, f32::MAX, f32::INFINITY];
+    let distances = [0.0, -1.0, 1e-9, 0.7, 100.0, 1e300, f64::INFINITY, f64::NAN];
+    for shift in 0..WIDTH {
+        let channel = |lane: usize, step: usize| special[(lane * step + shift) % WIDTH];
+        let coefficients = std::array::from_fn(|lane| Rgb::new(channel(lane, 1), channel(lane, 3), channel(lane, 5)));
+        let bodies = Bodies { coefficients, distances };
+        for set in InstructionSet::available() {
+            assert_eq!(dispatch(set, &bodies), bodies.one_by_one(), "{set:?} {shift}");
+        }
+        // The twin: rays that took each other's way.
+        let mut exchanged = Bodies { coefficients, distances };
+        exchanged.distances.swap(3, 4);
+        assert_ne!(dispatch(InstructionSet::best(), &exchanged), bodies.one_by_one(), "{shift}");
+    }
 }
 
 proptest! {
