@@ -34,14 +34,8 @@ const LN_2_LOW: f64 = (LN_2 - LN_2_HIGH) + 2.319_046_813_846_299_6e-17;
 #[inline(always)]
 pub fn power_to_f32<L: Lanes>(base: L, exponent: f64, asked: Bits) -> L::Floats {
     let logarithm = natural_logarithm(base) * L::splat(exponent);
-    let power = exponential(logarithm);
-    let (power, decided) = rounded::<L>(power);
     let in_range = base.ge(L::splat(f64::MIN_POSITIVE)) & logarithm.ge(L::splat(SMALLEST));
-    let known = in_range & decided;
-    let zero = L::Floats::splat(0.0);
-    let power = power.or_where_not(asked & known, zero);
-    let rest = asked.without(known);
-    if rest.is_empty() { power } else { one_by_one::<L>(base, rest, power, |base| portable::pow(base, exponent)) }
+    rounded(exponential(logarithm), in_range, asked, base, |base| portable::pow(base, exponent))
 }
 
 /// e to the power of numbers that are not above 0, rounded to `f32`, in the lanes that are asked for; 0 in the others. The bits are those of
@@ -56,30 +50,30 @@ pub fn power_to_f32<L: Lanes>(base: L, exponent: f64, asked: Bits) -> L::Floats 
 #[inline(always)]
 pub fn exponential_to_f32<L: Lanes>(number: L, asked: Bits) -> L::Floats {
     // What is below the smallest is taken for it: both are 0 as an `f32`.
-    let (power, decided) = rounded::<L>(exponential(number));
-    let known = decided & number.le(L::splat(0.0));
-    let power = power.or_where_not(asked & known, L::Floats::splat(0.0));
-    let rest = asked.without(known);
-    if rest.is_empty() { power } else { one_by_one::<L>(number, rest, power, portable::exp) }
+    rounded(exponential(number), number.le(L::splat(0.0)), asked, number, portable::exp)
 }
 
-/// Powers that err by [`ERROR`], rounded to `f32`, and the lanes where the true ones round to the same.
+/// Powers that err by [`ERROR`] where they are in range, rounded to `f32`, in the lanes that are asked for; 0 in the others. What they do
+/// not decide is what `exact` makes of the numbers.
 #[inline(always)]
-fn rounded<L: Lanes>(power: L) -> (L::Floats, Bits) {
+fn rounded<L: Lanes>(power: L, in_range: Bits, asked: Bits, numbers: L, exact: impl Fn(f64) -> f64) -> L::Floats {
     let low = (power * L::splat(1.0 - ERROR)).to_floats();
     let high = (power * L::splat(1.0 + ERROR)).to_floats();
-    (low, !low.lt(high))
+    let known = in_range.without(low.lt(high));
+    let power = low.or_where_not(asked & known, L::Floats::splat(0.0));
+    let rest = asked.without(known);
+    if rest.is_empty() { power } else { one_by_one(numbers, rest, power, exact) }
 }
 
 /// Those lanes that the series does not decide.
 #[cold]
 #[inline(never)]
-fn one_by_one<L: Lanes>(numbers: L, lanes: Bits, others: L::Floats, power: impl Fn(f64) -> f64) -> L::Floats {
+fn one_by_one<L: Lanes>(numbers: L, lanes: Bits, others: L::Floats, exact: impl Fn(f64) -> f64) -> L::Floats {
     let (mut row, mut powers) = ([0.0; WIDTH], [0.0; WIDTH]);
     numbers.store(&mut row, 0);
     others.store(&mut powers, 0);
     for lane in lanes.lanes() {
-        powers[lane] = power(row[lane]) as f32;
+        powers[lane] = exact(row[lane]) as f32;
     }
     L::Floats::load(&powers, 0)
 }
@@ -126,7 +120,8 @@ mod tests {
     use super::*;
     use crate::lanes::{InstructionSet, Work, dispatch};
 
-    struct Powers<'a>(&'a [f64; WIDTH], f64, Bits);
+    /// The numbers, their exponent, or else e to the power of them, and the lanes that are asked for.
+    struct Powers<'a>(&'a [f64; WIDTH], Option<f64>, Bits);
 
     impl Work for Powers<'_> {
         type Output = [f32; WIDTH];
@@ -134,23 +129,12 @@ mod tests {
         fn run<L: Lanes>(self) -> [f32; WIDTH] {
             let mut powers = [0.0; WIDTH];
             for at in (0..WIDTH).step_by(L::COUNT) {
-                let asked = Bits(self.2.0 >> at) & L::all();
-                power_to_f32(L::load(self.0, at), self.1, asked).store(&mut powers, at);
-            }
-            powers
-        }
-    }
-
-    struct Exponentials<'a>(&'a [f64; WIDTH], Bits);
-
-    impl Work for Exponentials<'_> {
-        type Output = [f32; WIDTH];
-        #[inline(always)]
-        fn run<L: Lanes>(self) -> [f32; WIDTH] {
-            let mut powers = [0.0; WIDTH];
-            for at in (0..WIDTH).step_by(L::COUNT) {
-                let asked = Bits(self.1.0 >> at) & L::all();
-                exponential_to_f32(L::load(self.0, at), asked).store(&mut powers, at);
+                let (numbers, asked) = (L::load(self.0, at), Bits(self.2.0 >> at) & L::all());
+                let some = match self.1 {
+                    Some(exponent) => power_to_f32(numbers, exponent, asked),
+                    None => exponential_to_f32(numbers, asked),
+                };
+                some.store(&mut powers, at);
             }
             powers
         }
@@ -189,7 +173,7 @@ mod tests {
         ) {
             let bases: [f64; WIDTH] = std::array::from_fn(|i| bases[i]);
             for set in InstructionSet::available() {
-                let powers = dispatch(set, Powers(&bases, exponent, Bits(asked)));
+                let powers = dispatch(set, Powers(&bases, Some(exponent), Bits(asked)));
                 for lane in 0..WIDTH {
                     let expected = portable::pow(bases[lane], exponent) as f32;
                     let expected = if Bits(asked).has(lane) { expected } else { 0.0 };
@@ -204,7 +188,7 @@ mod tests {
         ) {
             let numbers: [f64; WIDTH] = std::array::from_fn(|i| numbers[i]);
             for set in InstructionSet::available() {
-                let powers = dispatch(set, Exponentials(&numbers, Bits(asked)));
+                let powers = dispatch(set, Powers(&numbers, None, Bits(asked)));
                 for lane in 0..WIDTH {
                     let expected = portable::exp(numbers[lane]) as f32;
                     let expected = if Bits(asked).has(lane) { expected } else { 0.0 };
@@ -236,9 +220,9 @@ mod tests {
     fn lanes_that_are_not_asked_for_may_hold_anything() {
         let bases = [-1.0, -1e300, 1e300, f64::INFINITY, f64::NEG_INFINITY, f64::NAN, -0.0, 0.5];
         for set in InstructionSet::available() {
-            let powers = dispatch(set, Powers(&bases, 1e9, Bits::lane(7)));
+            let powers = dispatch(set, Powers(&bases, Some(1e9), Bits::lane(7)));
             assert_eq!(powers, [0.0; WIDTH], "{set:?}");
-            assert_eq!(dispatch(set, Powers(&bases, 2.0, Bits::lane(7)))[7], 0.25, "{set:?}");
+            assert_eq!(dispatch(set, Powers(&bases, Some(2.0), Bits::lane(7)))[7], 0.25, "{set:?}");
         }
     }
 

@@ -21,7 +21,7 @@ use crate::interaction::{LaneSurface, SurfaceRows};
 use crate::light::Light;
 use crate::material::{LaneBsdf, Material};
 use crate::observe::{BoundaryCrossing, Observer};
-use crate::optics::{Absorb, beer_lambert, fresnel_dielectric_lanes, reflect_lanes, refract_lanes};
+use crate::optics::{Stretches, beer_lambert, fresnel_dielectric_lanes, reflect_lanes, refract_lanes};
 use crate::task::{Band, Crossing, Inside, MediumStack, RayKind, RayRows, RayTask, Term, column, set_column};
 use crate::texture::{Footprint, LaneCoordinates, SeenAtOnce, ViewProjection};
 
@@ -367,23 +367,23 @@ fn travel<L: Lanes, O: Observer>(
     hits: &HitRows,
     out: &mut Sink<'_, O>,
 ) -> [[f32; WIDTH]; 3] {
-    let (mut coefficients, mut distances) = ([[0.0; WIDTH]; 3], [f64::INFINITY; WIDTH]);
+    let mut stretches = Stretches::NONE;
     for lane in active.lanes() {
         let Some(medium) = medium_around(scene, rays.media[at + lane], out) else { continue };
-        if met.has(lane) {
-            distances[at + lane] = hits.t[at + lane];
-        }
-        let (distance, extinction) = (distances[at + lane], medium.absorption + medium.scattering);
+        let distance = if met.has(lane) { hits.t[at + lane] } else { f64::INFINITY };
+        let extinction = medium.absorption + medium.scattering;
         if !medium.scattering.is_black() {
             scattering::gather(scene, &rays.task(at + lane), medium, distance, out);
         }
         if out.is_watched() {
             out.observer().travelled(rays.notes[at + lane].id, beer_lambert(extinction, distance));
         }
-        set_column(&mut coefficients, at + lane, extinction.to_array());
+        stretches.put(at + lane, extinction, distance);
     }
     let mut throughput = rays.throughput;
-    L::stage(Absorb { coefficients: &coefficients, distances: &distances, light: &mut throughput, at });
+    if stretches.any() {
+        stretches.absorb::<L>(&mut throughput, at);
+    }
     throughput
 }
 

@@ -45,22 +45,52 @@ fn left_of<L: Lanes>(coefficient: L::Floats, distance: L) -> L::Floats {
     exponential_to_f32(-depth, absorbed).or_where_not(absorbed, L::Floats::splat(1.0))
 }
 
-/// Light on its ways through bodies, side by side: what is left of it takes its place. Work of its own, since few rays need it.
-pub(crate) struct Absorb<'a> {
-    /// The coefficients of what each ray travels in; 0 where light passes unchanged.
-    pub coefficients: &'a [[f32; WIDTH]; 3],
-    /// How far each travels.
-    pub distances: &'a [f64; WIDTH],
-    /// The light, from this place on.
-    pub light: &'a mut [[f32; WIDTH]; 3],
-    pub at: usize,
+/// How far rays side by side travel in which bodies; none where light passes unchanged.
+pub(crate) struct Stretches {
+    coefficients: [[f32; WIDTH]; 3],
+    distances: [f64; WIDTH],
+    any: bool,
+}
+
+impl Stretches {
+    pub const NONE: Self = Self { coefficients: [[0.0; WIDTH]; 3], distances: [0.0; WIDTH], any: false };
+
+    /// Puts in that of one ray: how much is lost per length, and how far it goes.
+    #[inline(always)]
+    pub fn put(&mut self, lane: usize, coefficient: Rgb, distance: f64) {
+        let lane = lane & (WIDTH - 1);
+        for (row, x) in self.coefficients.iter_mut().zip(coefficient.to_array()) {
+            row[lane] = x;
+        }
+        self.distances[lane] = distance;
+        self.any = true;
+    }
+
+    /// Whether there is any.
+    #[inline(always)]
+    pub fn any(&self) -> bool {
+        self.any
+    }
+
+    /// Leaves of the light of rays, from a place on, what [`beer_lambert`] does. Work of its own, since most light is in no body, or in a
+    /// clear one.
+    #[inline(always)]
+    pub fn absorb<L: Lanes>(&self, light: &mut [[f32; WIDTH]; 3], at: usize) {
+        L::stage(Absorb { stretches: self, light, at });
+    }
+}
+
+struct Absorb<'a> {
+    stretches: &'a Stretches,
+    light: &'a mut [[f32; WIDTH]; 3],
+    at: usize,
 }
 
 impl Work for Absorb<'_> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self { coefficients, distances, light, at } = self;
+        let Self { stretches: Stretches { coefficients, distances, .. }, light, at } = self;
         let left = beer_lambert_lanes(LaneColor::load(coefficients, at), L::load(distances, at));
         (LaneColor::<L::Floats>::load(light, at) * left).store(light, at);
     }

@@ -21,7 +21,7 @@ pub use fresnel::{
     FresnelAmplitudes, brewster_angle, fresnel_amplitudes, fresnel_dielectric, fresnel_dielectric_lanes,
     fresnel_dielectric_polarized,
 };
-pub(crate) use medium::Absorb;
+pub(crate) use medium::Stretches;
 pub use medium::{beer_lambert, henyey_greenstein};
 pub use metal::Metal;
 pub use reflection::{reflect, reflect_lanes};

@@ -13,7 +13,7 @@ use crate::compile::CompiledScene;
 use crate::geometry::{Blockers, Geometry, Hit, HitRows, QueryScratch, RayRow};
 use crate::interaction::{LaneSurface, SurfaceRows, Surroundings};
 use crate::observe::{Observer, ShadowStep};
-use crate::optics::{Absorb, beer_lambert, fresnel_dielectric_lanes};
+use crate::optics::{Stretches, beer_lambert, fresnel_dielectric_lanes};
 use crate::statistics::Statistics;
 use crate::task::{Inside, MediumStack, MediumStacks, QuestionRows, SampleSums, column, set_column};
 
@@ -284,25 +284,22 @@ impl Context<'_> {
     /// Each of some rays travels up to a distance in what it is in.
     #[inline(always)]
     fn travel<L: Lanes>(&self, rows: &QuestionRows, at: usize, lanes: Bits, to: &[f64; WIDTH], way: &mut Way<L>) {
-        let (mut coefficients, mut distances, mut is_clear) = ([[0.0; WIDTH]; 3], [0.0; WIDTH], true);
+        let mut stretches = Stretches::NONE;
         for lane in lanes.lanes() {
             if let Some(inside) = self.media.current(way.media[lane])
                 && let Some(body) = &self.scene.materials[inside.material as usize].body
                 && !body.medium.is_clear()
             {
-                is_clear = false;
-                distances[lane] = to[at + lane] - way.from[lane];
                 let coefficient = extinction(&body.medium, rows.notes[at + lane].extinction_scale);
-                set_column(&mut coefficients, lane, coefficient.to_array());
+                stretches.put(lane, coefficient, to[at + lane] - way.from[lane]);
             }
         }
-        if is_clear {
-            return;
+        if stretches.any() {
+            let mut light = [[0.0; WIDTH]; 3];
+            way.share.store(&mut light, 0);
+            stretches.absorb::<L>(&mut light, 0);
+            way.share = LaneColor::load(&light, 0);
         }
-        let mut light = [[0.0; WIDTH]; 3];
-        way.share.store(&mut light, 0);
-        L::stage(Absorb { coefficients: &coefficients, distances: &distances, light: &mut light, at: 0 });
-        way.share = LaneColor::load(&light, 0);
     }
 }
 

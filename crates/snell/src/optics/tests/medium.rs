@@ -7,7 +7,7 @@ use snell_math::lanes::{InstructionSet, Lanes, WIDTH, Work, dispatch};
 use snell_math::{Rgb, portable};
 
 use super::config;
-use crate::optics::{Absorb, beer_lambert, henyey_greenstein};
+use crate::optics::{Stretches, beer_lambert, henyey_greenstein};
 
 /// ∫ f(cos) dω over the sphere, by Gauss's three-point rule in many pieces.
 fn over_sphere(f: impl Fn(f64) -> f64) -> f64 {
@@ -67,10 +67,12 @@ impl Work for &Bodies {
     /// What is left of white light.
     #[inline(always)]
     fn run<L: Lanes>(self) -> Self::Output {
-        let coefficients = &[0, 1, 2].map(|channel| self.coefficients.map(|color| color.to_array()[channel]));
-        let light = &mut [[1.0; WIDTH]; 3];
+        let (mut stretches, mut light) = (Stretches::NONE, [[1.0; WIDTH]; 3]);
+        for lane in 0..WIDTH {
+            stretches.put(lane, self.coefficients[lane], self.distances[lane]);
+        }
         for at in (0..WIDTH).step_by(L::COUNT) {
-            L::stage(Absorb { coefficients, distances: &self.distances, light, at });
+            stretches.absorb::<L>(&mut light, at);
         }
         std::array::from_fn(|lane| light.map(|row| row[lane].to_bits()))
     }
